@@ -1,0 +1,24 @@
+//! Generic multistep integration and synchronous kinematic control of robot arms.
+//!
+//! Three things that are usually welded together are separate values here: a *formula* (a row of exact
+//! rationals, checked for order, error constant and zero-stability before anything runs on it), a *robot*
+//! (read from URDF) and a *law* (how redundancy is resolved). A plan is formula x robot x task x law.
+
+pub mod formula;
+pub mod integrate;
+pub mod law;
+pub mod math;
+pub mod planner;
+pub mod report;
+pub mod robot;
+pub mod scenario;
+pub mod scheme;
+pub mod study;
+pub mod task;
+
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
+
+/// The linear algebra of the public interface: poses are [`nalgebra::IsometryMatrix3`], twists [`nalgebra::Vector6`].
+pub use nalgebra;

@@ -1,0 +1,3 @@
+//! The `kinstep` command.
+
+fn main() {}
