@@ -45,8 +45,9 @@ def _number(element, key, default):
 
 def read_joints(path):
     """The joints of a URDF file, in file order."""
-    # Real files carry prefixed tags (drake:, xacro:) without declaring the prefix; none of them describes a joint.
-    text = re.sub(r"<(/?)[\w.-]+:", r"<\1foreign-", pathlib.Path(path).read_text(encoding="utf-8"))
+    # Real files carry prefixes (drake:, xacro:) that they do not declare; none of these describes a joint.
+    text = pathlib.Path(path).read_text(encoding="utf-8")
+    text = re.sub(r"(<[/]?|\s)[\w.-]+:([\w.-]+(?=[\s/>=]))", r"\1foreign-\2", text)
     joints = []
     for element in ElementTree.fromstring(text):
         if element.tag != "joint" or element.find("child") is None:
@@ -151,11 +152,14 @@ class PinocchioRobot:
         self.model = pinocchio.buildModelFromUrdf(str(path))
         self.data = self.model.createData()
 
+    def has(self, link):
+        """Whether Pinocchio knows the link."""
+        return self.model.existFrame(link, self.pin.FrameType.BODY)
+
     def _frame(self, link):
-        frame = self.model.getFrameId(link, self.pin.FrameType.BODY)
-        if frame >= self.model.nframes:
+        if not self.has(link):
             raise KeyError(link)
-        return frame
+        return self.model.getFrameId(link, self.pin.FrameType.BODY)
 
     def _configuration(self, positions):
         q = self.pin.neutral(self.model)
