@@ -1,1 +1,24 @@
-//! (room: scenario)
+//! Scenarios: what to plan, as a TOML file that people write and programs generate.
+//!
+//! [`ScenarioText`] is the text of a file with the positions of its keys and the values laid over it from
+//! outside; [`Scenario`] is what it says. Every refusal is a [`ScenarioError`] that names the key and its place.
+
+mod check;
+mod document;
+mod error;
+mod expression;
+mod key_path;
+mod model;
+mod overrides;
+mod path_spec;
+mod real;
+#[cfg(test)]
+mod tests;
+
+pub use document::ScenarioText;
+pub use error::{ErrorKind, Place, ScenarioError};
+pub use expression::{ExpressionError, evaluate};
+pub use key_path::{KeyPath, Step};
+pub use model::{ArmSpec, LawKind, LawSpec, Mount, Scenario, Start, TaskKind};
+pub use path_spec::{PathKind, PathSpec, Plane, TimeLawKind, TurnSpec};
+pub use real::Real;

@@ -1,0 +1,187 @@
+//! What a scenario must satisfy before anything is looked up or computed.
+
+use super::error::{ErrorKind, ScenarioError, suggestion};
+use super::key_path::KeyPath;
+use super::model::{ArmSpec, Scenario, TaskKind};
+use super::path_spec::{PathKind, PathSpec, TurnSpec};
+use super::real::Real;
+
+/// Most memory that the trajectories of one plan may take [bytes].
+const MAX_BYTES: f64 = 4e9;
+
+fn refuse(path: &KeyPath, problem: impl std::fmt::Display) -> ScenarioError {
+    ScenarioError::at(ErrorKind::Scenario, path, problem)
+}
+
+fn require(holds: bool, path: &KeyPath, problem: impl FnOnce() -> String) -> Result<(), ScenarioError> {
+    if holds { Ok(()) } else { Err(refuse(path, problem())) }
+}
+
+impl Scenario {
+    /// Checks what can be checked without the robots and the formula table: signs, ranges, names, and that each
+    /// path has the parameters of its kind and no others.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] for the first thing that does not hold.
+    pub fn check(&self) -> Result<(), ScenarioError> {
+        self.check_time()?;
+        self.check_law()?;
+        let arms = KeyPath::dotted("arm");
+        require(!self.arm.is_empty(), &arms, || "a scenario needs at least one [[arm]]".to_owned())?;
+        for (index, arm) in self.arm.iter().enumerate() {
+            check_name(&arms.index(index).key("name"), &arm.name)?;
+            let taken = self.arm[..index].iter().any(|other| other.name == arm.name);
+            require(!taken, &arms.index(index).key("name"), || {
+                format!("two arms are called \"{}\"; each needs a name of its own", arm.name)
+            })?;
+            check_arm(&arms.key(&arm.name), arm)?;
+        }
+        self.check_size()
+    }
+
+    fn check_time(&self) -> Result<(), ScenarioError> {
+        let (sigma, duration) = (self.sigma.value(), self.duration.value());
+        let at = KeyPath::dotted("sigma");
+        require(sigma.is_finite() && sigma > 0.0, &at, || {
+            format!("{sigma} s is not a sampling gap; give a positive number of seconds such as 0.01")
+        })?;
+        require(duration.is_finite() && duration > 0.0, &KeyPath::dotted("duration"), || {
+            format!("{duration} s is not the length of a motion; give a positive number of seconds")
+        })?;
+        require(sigma <= duration, &at, || {
+            format!("{sigma} s is longer than the motion of {duration} s; it must be at most the duration")
+        })
+    }
+
+    fn check_law(&self) -> Result<(), ScenarioError> {
+        let law = KeyPath::dotted("law");
+        if let (Some(h), Some(gain)) = (&self.law.h, &self.law.gain) {
+            let problem = format!("h = {h} and gain = {gain} say the same thing twice; give one of them");
+            return Err(refuse(&law.key("gain"), problem));
+        }
+        if let Some(h) = &self.law.h {
+            let feeds_back = h.value() > 0.0 || (h.value() == 0.0 && self.allow_unstable);
+            require(feeds_back, &law.key("h"), || {
+                let remedy = "set allow_unstable = true to run without feedback (h = 0)";
+                format!("{h} is not a feedback step; h is positive and below the formula's h_max; {remedy}")
+            })?;
+        }
+        if let Some(gain) = &self.law.gain {
+            require(gain.value() > 0.0, &law.key("gain"), || {
+                format!("{gain} 1/s is not a gain; it is positive")
+            })?;
+        }
+        if let Some(threshold) = &self.law.threshold {
+            require(threshold.value() > 0.0, &law.key("threshold"), || {
+                format!("{threshold} is not a threshold for singular values; it is positive")
+            })?;
+        }
+        Ok(())
+    }
+
+    fn check_size(&self) -> Result<(), ScenarioError> {
+        let steps = self.duration.value() / self.sigma.value();
+        let columns: usize = self.arm.iter().map(|arm| 2 * arm.q0.len() + 1).sum();
+        let bytes = steps * (columns + 1) as f64 * 8.0;
+        require(bytes <= MAX_BYTES, &KeyPath::dotted("sigma"), || {
+            let (gigabytes, hours) = (bytes / 1e9, steps * self.arm.len() as f64 * 1e-6 / 3600.0);
+            format!(
+                "{} s over {} s are {steps:.3e} steps: {gigabytes:.3e} GB of trajectory and about {hours:.1e} hours; \
+                 take a longer gap or a shorter motion (at most {:.0} GB)",
+                self.sigma,
+                self.duration,
+                MAX_BYTES / 1e9
+            )
+        })
+    }
+}
+
+fn check_name(at: &KeyPath, name: &str) -> Result<(), ScenarioError> {
+    let plain = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_'));
+    require(plain, at, || {
+        format!(
+            "\"{name}\" is not a name for an arm; letters, digits, '-' and '_' are, since it heads columns of files"
+        )
+    })
+}
+
+fn check_arm(at: &KeyPath, arm: &ArmSpec) -> Result<(), ScenarioError> {
+    require(!arm.q0.is_empty(), &at.key("q0"), || "give one position per joint of the chain".to_owned())?;
+    for (value, joint) in arm.q0.iter().zip(0..) {
+        finite(&at.key("q0").index(joint), value)?;
+    }
+    for (key, triple) in [("xyz", &arm.mount.xyz), ("rpy", &arm.mount.rpy)] {
+        for (value, axis) in triple.iter().zip(0..) {
+            finite(&at.key("mount").key(key).index(axis), value)?;
+        }
+    }
+    check_path(&at.key("path"), &arm.path, arm.task)
+}
+
+fn finite(at: &KeyPath, value: &Real) -> Result<(), ScenarioError> {
+    require(value.value().is_finite(), at, || format!("{value} is not a finite number"))
+}
+
+fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), ScenarioError> {
+    let (kind, known) = (path.kind.name(), path.kind.parameters());
+    for given in path.given() {
+        require(known.contains(&given), &at.key(given), || {
+            format!(
+                "a {kind} does not use this; it has {} ({})",
+                known.join(", "),
+                suggestion(given, known.clone())
+            )
+        })?;
+    }
+    for needed in path.kind.required() {
+        require(path.given().contains(needed), &at.key(needed), || format!("a {kind} needs this"))?;
+    }
+    if let Some(radius) = &path.radius {
+        require(radius.value() > 0.0, &at.key("radius"), || {
+            format!("{radius} m is not a radius; it is positive")
+        })?;
+    }
+    if path.kind == PathKind::Line {
+        let ends = [&path.to, &path.displacement].iter().filter(|end| end.is_some()).count();
+        let problem =
+            || "a line ends at one of `to` (world) and `displacement` (from the tip); give one".to_owned();
+        require(ends == 1, at, problem)?;
+    }
+    check_axes(at, path, task)?;
+    path.turn.as_ref().map_or(Ok(()), |turn| check_turn(&at.key("turn"), turn, task))
+}
+
+/// Points and amplitudes have 2 numbers (the plane's or x and y) or 3.
+fn check_axes(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), ScenarioError> {
+    let points = [
+        ("to", &path.to),
+        ("displacement", &path.displacement),
+        ("center", &path.center),
+        ("amplitudes", &path.amplitudes),
+    ];
+    for (name, value) in points {
+        let Some(value) = value else { continue };
+        let wanted: &[usize] = if task == TaskKind::PositionXy { &[2, 3] } else { &[3] };
+        let wanted = if name == "amplitudes" { &[2, 3] } else { wanted };
+        require(wanted.contains(&value.len()), &at.key(name), || {
+            let counts: Vec<String> = wanted.iter().map(usize::to_string).collect();
+            format!("expected {} numbers, got {}", counts.join(" or "), value.len())
+        })?;
+    }
+    let axes = path.amplitudes.as_ref().map_or(0, Vec::len);
+    for (name, value) in [("frequencies", &path.frequencies), ("phases", &path.phases)] {
+        let got = value.as_ref().map_or(axes, Vec::len);
+        require(got == axes, &at.key(name), || {
+            format!("expected {axes} numbers, one per amplitude, got {got}")
+        })?;
+    }
+    Ok(())
+}
+
+fn check_turn(at: &KeyPath, turn: &TurnSpec, task: TaskKind) -> Result<(), ScenarioError> {
+    require(task == TaskKind::Pose, at, || "only a task \"pose\" has an orientation to turn".to_owned())?;
+    let length = turn.axis.iter().map(|x| x.value() * x.value()).sum::<f64>().sqrt();
+    require(length > 0.0 && length.is_finite(), &at.key("axis"), || {
+        format!("an axis of length {length} points nowhere; give a direction such as [0, 0, 1]")
+    })
+}

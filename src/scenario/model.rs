@@ -1,0 +1,153 @@
+//! What a scenario says, as plain values.
+
+use serde::{Deserialize, Serialize};
+
+use super::path_spec::PathSpec;
+use super::real::Real;
+
+/// A plan to be made: how time is discretised, what moves, along what, and how redundancy is resolved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// Sampling gap [s]. Where it does not divide `duration` it is adjusted so that it does, with a warning.
+    pub sigma: Real,
+    /// Length of the motion [s].
+    pub duration: Real,
+    /// Id of the formula row, built-in or from `formulas`.
+    pub formula: String,
+    /// How the first states are made. Default: the cheapest Runge-Kutta start of sufficient order.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Start>,
+    /// Files with further formula rows, relative to the scenario's own file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub formulas: Vec<String>,
+    /// Permit a step size h outside the formula's feedback range, to study what happens there.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub allow_unstable: bool,
+    /// How redundancy is resolved, and how strongly the task error is fed back.
+    #[serde(default)]
+    pub law: LawSpec,
+    /// The arms, which move in synchrony.
+    pub arm: Vec<ArmSpec>,
+}
+
+/// How the first states of a run are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Start {
+    /// Euler steps with the same h, as in the paper: leaves a residual of (sigma^2/2) phi''.
+    Paper,
+    /// Rows of the same family of rising order; begins like `paper`.
+    Ramp,
+    /// The classical Runge-Kutta method of order 4.
+    Rk4,
+    /// A Runge-Kutta method of order 8.
+    Rk8,
+}
+
+/// How redundancy is resolved, and how strongly the task error is fed back. At most one of `h` and `gain`;
+/// without either, h is the formula's optimum.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct LawSpec {
+    /// The law.
+    #[serde(default)]
+    pub kind: LawKind,
+    /// Feedback step h, dimensionless: held fixed, the task error falls like sigma^(p+1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub h: Option<Real>,
+    /// Feedback gain k [1/s]: h = sigma k gamma(1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Real>,
+    /// Smallest singular value of the task Jacobian that is inverted undamped; below it the inverse is damped,
+    /// and the report says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<Real>,
+}
+
+/// The laws that a scenario can name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum LawKind {
+    /// The joint velocity of least norm, by the pseudoinverse of the task Jacobian.
+    #[default]
+    Pseudoinverse,
+}
+
+/// One arm: a chain of a robot, where it stands, how it begins and what its tip follows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ArmSpec {
+    /// Name of the arm: letters, digits, `-` and `_`.
+    pub name: String,
+    /// A built-in robot by name, or a path to a URDF file, relative to the scenario's own file.
+    pub robot: String,
+    /// Link at which the chain begins.
+    pub base: String,
+    /// Link at which the chain ends: what follows the path.
+    pub tip: String,
+    /// What of the tip follows the path.
+    pub task: TaskKind,
+    /// Joint positions at the start [rad] or [m], one per joint of the chain in its order.
+    pub q0: Vec<Real>,
+    /// Pose of `base` in the world. Default: the world's own.
+    #[serde(default, skip_serializing_if = "Mount::is_identity")]
+    pub mount: Mount,
+    /// The path of the tip.
+    pub path: PathSpec,
+}
+
+/// What of the tip follows the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum TaskKind {
+    /// Position in the plane, x and y.
+    PositionXy,
+    /// Position in space.
+    Position,
+    /// Position and orientation.
+    Pose,
+}
+
+/// A pose in the world.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Mount {
+    /// Position [m].
+    #[serde(default = "zeros")]
+    pub xyz: [Real; 3],
+    /// Roll, pitch and yaw about fixed axes [rad], as in URDF.
+    #[serde(default = "zeros")]
+    pub rpy: [Real; 3],
+}
+
+fn zeros() -> [Real; 3] {
+    [0.0, 0.0, 0.0].map(Real::from)
+}
+
+impl Default for Mount {
+    fn default() -> Self {
+        Self { xyz: zeros(), rpy: zeros() }
+    }
+}
+
+impl Mount {
+    fn is_identity(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl Scenario {
+    /// Returns the scenario as TOML that reads back as the same scenario.
+    #[expect(clippy::missing_panics_doc, reason = "a scenario is tables, text and numbers, which TOML can write")]
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("a scenario has only tables with text keys, finite numbers and text")
+    }
+}

@@ -1,0 +1,204 @@
+//! The path of an arm's tip, and which parameters each kind of path takes.
+
+use serde::{Deserialize, Serialize};
+
+use super::real::Real;
+
+/// A path for the tip. Curves are drawn in `plane`, turned by `rotation`, and shifted so that they begin at the
+/// tip's position at q0 unless `center` is given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct PathSpec {
+    /// Kind of curve.
+    pub kind: PathKind,
+    /// Size of a circle, tricuspid, astroid or rose [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius: Option<Real>,
+    /// Number of petals parameter of a rose: radius * cos(petals * a).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub petals: Option<Real>,
+    /// End of a line in world coordinates [m], 2 or 3 of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<Vec<Real>>,
+    /// End of a line from its beginning, along world axes [m], 2 or 3 of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacement: Option<Vec<Real>>,
+    /// Amplitudes of a Lissajous curve [m], 2 or 3 of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub amplitudes: Option<Vec<Real>>,
+    /// Frequencies of a Lissajous curve, in turns per turn of the angle, as many as amplitudes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequencies: Option<Vec<Real>>,
+    /// Phases of a Lissajous curve [rad], as many as amplitudes. Default: zeros.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phases: Option<Vec<Real>>,
+    /// Plane that the curve is drawn in, in world axes. Default: xy.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane: Option<Plane>,
+    /// Turn of the curve in its plane [rad]. Default: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<Real>,
+    /// Angle at which the curve begins [rad]. Default: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<Real>,
+    /// Angle that the curve sweeps, with its sign [rad]. Default: 2 pi.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sweep: Option<Real>,
+    /// Centre of the curve in world coordinates [m], 2 or 3 of them. Default: such that the curve begins at the tip.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub center: Option<Vec<Real>>,
+    /// How the path is travelled in time. Default: sin2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_law: Option<TimeLawKind>,
+    /// Turn of the tip in the course of a path of task `pose`. Default: the orientation is held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turn: Option<TurnSpec>,
+}
+
+/// Kinds of curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum PathKind {
+    /// radius (cos a, sin a).
+    Circle,
+    /// radius (2 cos a + cos 2a, 2 sin a - sin 2a): three cusps.
+    Tricuspid,
+    /// radius (cos^3 a, sin^3 a): four cusps.
+    Astroid,
+    /// A straight line.
+    Line,
+    /// Amplitudes times sin(frequency a + phase), axis by axis.
+    Lissajous,
+    /// radius cos(petals a) (cos a, sin a).
+    Rose,
+}
+
+/// Planes of the world's axes; the first letter is the curve's own x.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Plane {
+    /// World x and y.
+    Xy,
+    /// World y and z.
+    Yz,
+    /// World z and x.
+    Zx,
+    /// World y and x.
+    Yx,
+    /// World z and y.
+    Zy,
+    /// World x and z.
+    Xz,
+}
+
+/// How the angle of a path runs from its beginning to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum TimeLawKind {
+    /// sin^2(pi t / 2T): at rest at both ends.
+    Sin2,
+    /// sin^2((pi/2) sin^2(pi t / 2T)): velocity, acceleration and jerk vanish at both ends.
+    Sin2sin2,
+    /// t / T.
+    Linear,
+    /// The polynomial of degree 5 with velocity and acceleration zero at both ends.
+    Quintic,
+}
+
+/// A turn about a fixed axis in the course of the path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct TurnSpec {
+    /// Axis in world coordinates; its length does not matter, but it must have one.
+    pub axis: [Real; 3],
+    /// Angle of the whole turn [rad].
+    pub angle: Real,
+}
+
+/// Parameters that every curve by angle takes.
+const BY_ANGLE: [&str; 6] = ["plane", "rotation", "from", "sweep", "center", "radius"];
+
+impl PathKind {
+    /// Returns the name that scenarios use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Circle => "circle",
+            Self::Tricuspid => "tricuspid",
+            Self::Astroid => "astroid",
+            Self::Line => "line",
+            Self::Lissajous => "lissajous",
+            Self::Rose => "rose",
+        }
+    }
+
+    /// Returns the parameters that the kind must have; a line has one of `to` and `displacement`.
+    pub fn required(self) -> &'static [&'static str] {
+        match self {
+            Self::Circle | Self::Tricuspid | Self::Astroid => &["radius"],
+            Self::Rose => &["radius", "petals"],
+            Self::Lissajous => &["amplitudes", "frequencies"],
+            Self::Line => &[],
+        }
+    }
+
+    /// Returns every parameter that the kind uses, `kind` apart.
+    pub fn parameters(self) -> Vec<&'static str> {
+        let mut known: Vec<&str> = match self {
+            Self::Circle | Self::Tricuspid | Self::Astroid => BY_ANGLE.to_vec(),
+            Self::Rose => [&BY_ANGLE[..], &["petals"]].concat(),
+            Self::Lissajous => [&BY_ANGLE[..5], &["amplitudes", "frequencies", "phases"]].concat(),
+            Self::Line => vec!["to", "displacement"],
+        };
+        known.extend(["time_law", "turn"]);
+        known
+    }
+}
+
+impl PathSpec {
+    /// Returns a path of one kind with no parameter yet.
+    pub fn new(kind: PathKind) -> Self {
+        Self {
+            kind,
+            radius: None,
+            petals: None,
+            to: None,
+            displacement: None,
+            amplitudes: None,
+            frequencies: None,
+            phases: None,
+            plane: None,
+            rotation: None,
+            from: None,
+            sweep: None,
+            center: None,
+            time_law: None,
+            turn: None,
+        }
+    }
+
+    /// Returns the names of the parameters that are given.
+    pub fn given(&self) -> Vec<&'static str> {
+        let all = [
+            ("radius", self.radius.is_some()),
+            ("petals", self.petals.is_some()),
+            ("to", self.to.is_some()),
+            ("displacement", self.displacement.is_some()),
+            ("amplitudes", self.amplitudes.is_some()),
+            ("frequencies", self.frequencies.is_some()),
+            ("phases", self.phases.is_some()),
+            ("plane", self.plane.is_some()),
+            ("rotation", self.rotation.is_some()),
+            ("from", self.from.is_some()),
+            ("sweep", self.sweep.is_some()),
+            ("center", self.center.is_some()),
+            ("time_law", self.time_law.is_some()),
+            ("turn", self.turn.is_some()),
+        ];
+        all.into_iter().filter(|(_, given)| *given).map(|(name, _)| name).collect()
+    }
+}

@@ -1,0 +1,223 @@
+//! Scenarios read, refused and written.
+
+use super::*;
+
+const SMALL: &str = r#"sigma = 0.01
+duration = 10.0
+formula = "la6-wang-guo"
+start = "paper"
+
+[law]
+kind = "pseudoinverse"
+h = 0.4
+
+[[arm]]
+name = "left"
+robot = "planar4"
+base = "base"
+tip = "tip"
+task = "position-xy"
+q0 = ["9*pi/10", "-pi/10", -0.1, 0]
+path = { kind = "tricuspid", radius = 0.4, rotation = "pi/2", time_law = "sin2" }
+
+[[arm]]
+name = "right"
+robot = "planar4"
+base = "base"
+tip = "tip"
+task = "position-xy"
+q0 = [0.1, 0.2, 0.3, 0.4]
+[arm.path]
+kind = "line"
+displacement = [0.1, 0]
+"#;
+
+fn read(text: &str) -> Result<Scenario, ScenarioError> {
+    ScenarioText::parse(text).and_then(|text| text.scenario())
+}
+
+fn refused(text: &str) -> ScenarioError {
+    read(text).expect_err("this scenario should be refused")
+}
+
+fn with(assignments: &[&str]) -> Result<Scenario, ScenarioError> {
+    let mut text = ScenarioText::parse(SMALL)?;
+    for assignment in assignments {
+        text.set(assignment)?;
+    }
+    text.scenario()
+}
+
+fn place(error: &ScenarioError) -> (usize, usize) {
+    let place = error.place.as_ref().expect("the error should have a place");
+    (place.line, place.column)
+}
+
+#[test]
+fn reads_numbers_and_expressions() {
+    let scenario = read(SMALL).unwrap();
+    assert_eq!(scenario.arm[0].q0[0].value(), 9.0 * std::f64::consts::PI / 10.0);
+    assert_eq!(scenario.arm[0].q0[3].value(), 0.0);
+    assert_eq!(scenario.arm[1].path.kind, PathKind::Line);
+    assert_eq!(scenario.start, Some(Start::Paper));
+    assert_eq!(scenario.arm[0].mount, Mount::default());
+}
+
+#[test]
+fn what_is_written_reads_back_the_same() {
+    let scenario = with(&[
+        "arm.left.mount.xyz=[0.1,\"pi\",1e-300]",
+        "arm.right.task=pose",
+        "arm.right.path.displacement=[0,0.1,0]",
+        "arm.right.path.turn={axis=[0,0,1], angle=\"pi/2\"}",
+        "allow_unstable=true",
+        "formulas=[\"mine.toml\"]",
+    ])
+    .unwrap();
+    assert_eq!(read(&scenario.to_toml()).unwrap(), scenario);
+}
+
+#[test]
+fn an_unknown_key_is_refused_with_the_nearest_and_its_place() {
+    let error = refused(&SMALL.replace("radius = 0.4", "raduis = 0.4"));
+    assert_eq!(error.message, "arm.left.path.raduis: there is no such key; did you mean radius?");
+    assert_eq!(place(&error), (17, 30));
+    let error = refused(&SMALL.replace("[law]\nkind", "[law]\ngian = 2\nkind"));
+    assert_eq!(error.message, "law.gian: there is no such key; did you mean gain?");
+    assert_eq!(place(&error), (7, 1));
+}
+
+#[test]
+fn a_missing_key_is_named_at_its_table() {
+    let error = refused(&SMALL.replacen("tip = \"tip\"\n", "", 1));
+    assert_eq!(error.message, "arm.left.tip: this key is missing");
+    assert_eq!(place(&error), (10, 1));
+    assert_eq!(refused("duration = 1").message, "sigma: this key is missing");
+}
+
+#[test]
+fn an_unknown_word_is_refused_with_the_list() {
+    let error = refused(&SMALL.replace("\"tricuspid\"", "\"tricusp\""));
+    assert!(
+        error.message.starts_with("arm.left.path.kind: \"tricusp\" is not one of circle, tricuspid"),
+        "{error}"
+    );
+    assert!(error.message.ends_with("did you mean tricuspid?"), "{error}");
+    assert_eq!(place(&error), (17, 17));
+}
+
+#[test]
+fn a_wrong_type_and_a_bad_expression_are_refused_where_they_stand() {
+    let error = refused(&SMALL.replace("-0.1, 0]", "true, 0]"));
+    assert!(
+        error.message.starts_with("arm.left.q0[2]: invalid type: boolean `true`, expected a number"),
+        "{error}"
+    );
+    let error = refused(&SMALL.replace("\"9*pi/10\"", "\"9*pie/10\""));
+    assert_eq!(
+        error.message,
+        "arm.left.q0[0]: \"9*pie/10\", column 3: 'pie' is not known; the only name is pi"
+    );
+    assert_eq!(place(&error), (16, 7));
+}
+
+#[test]
+fn a_parameter_of_another_kind_is_refused_with_the_kinds_own() {
+    let error = refused(&SMALL.replace("displacement = [0.1, 0]", "displacement = [0.1, 0]\npetals = 3"));
+    assert!(
+        error.message.contains("arm.right.path.petals: a line does not use this; it has to, displacement"),
+        "{error}"
+    );
+    assert_eq!(place(&error), (29, 10));
+    let error = refused(&SMALL.replace("radius = 0.4, ", ""));
+    assert_eq!(error.message, "arm.left.path.radius: a tricuspid needs this");
+    assert_eq!(place(&error).0, 17);
+}
+
+#[test]
+fn the_sampling_gap_is_positive_finite_and_at_most_the_duration() {
+    for bad in ["0", "0.0", "-0.01", "nan", "inf", "11", "1e-12", "\"1/0\"", "\"NaN\"", "true"] {
+        let error = refused(&SMALL.replace("sigma = 0.01", &format!("sigma = {bad}")));
+        assert!(error.message.starts_with("sigma: "), "{bad}: {error}");
+        assert_eq!((error.kind, place(&error)), (ErrorKind::Scenario, (1, 9)), "{bad}: {error}");
+        assert!(with(&[&format!("sigma={bad}")]).unwrap_err().message.contains("(--set sigma="), "{bad}");
+    }
+    assert!(read(&SMALL.replace("sigma = 0.01", "sigma = 10")).is_ok());
+}
+
+#[test]
+fn both_h_and_gain_are_one_too_many_but_setting_one_replaces_the_other() {
+    let error = refused(&SMALL.replace("h = 0.4", "h = 0.4\ngain = 20"));
+    assert!(error.message.contains("give one of them"), "{error}");
+    let scenario = with(&["law.gain=20"]).unwrap();
+    assert_eq!((scenario.law.h, scenario.law.gain.unwrap().value()), (None, 20.0));
+}
+
+#[test]
+fn two_arms_of_one_name_and_odd_names_are_refused() {
+    assert!(refused(&SMALL.replace("\"right\"", "\"left\"")).message.contains("two arms"));
+    assert!(refused(&SMALL.replace("\"right\"", "\"r.1\"")).message.contains("not a name"));
+    assert!(refused(&SMALL.replace("\"right\"", "\"\"")).message.contains("not a name"));
+}
+
+#[test]
+fn values_are_set_from_outside_by_the_names_of_arms() {
+    let scenario =
+        with(&["arm.left.q0=[0.1, \"pi/2\", 3, 4]", "formula=split-ab6", "arm.left.path.radius=pi/10"])
+            .unwrap();
+    assert_eq!(scenario.arm[0].q0[1].value(), std::f64::consts::PI / 2.0);
+    assert_eq!(scenario.formula, "split-ab6");
+    assert_eq!(scenario.arm[0].path.radius.as_ref().unwrap().value(), std::f64::consts::PI / 10.0);
+    assert_eq!(scenario.arm[1], read(SMALL).unwrap().arm[1]);
+}
+
+#[test]
+fn what_can_not_be_set_says_why() {
+    for (assignment, said) in [
+        ("arm.lefft.q0=[1]", "did you mean left?"),
+        ("arm.left.path.raduis=1", "did you mean radius?"),
+        ("laww.h=1", "did you mean law?"),
+        ("sigma", "write key.path=value"),
+        ("=3", "is not a key path"),
+        ("arm.left.name.x=3", "is a value"),
+        ("arm.left=3", "name a key of arm.left"),
+        ("arm.left.q0[1]=3", "is not a key path"),
+        ("sigma.x=1", "is a value"),
+    ] {
+        let error = with(&[assignment]).unwrap_err();
+        assert!(error.message.contains(said), "{assignment}: {error}");
+        assert!(error.message.contains(&format!("--set {assignment}")), "{assignment}: {error}");
+    }
+}
+
+#[test]
+fn positions_are_those_of_the_file_whatever_is_set() {
+    let mut text = ScenarioText::parse(&SMALL.replace("0.3, 0.4]", "true, 0.4]")).unwrap();
+    text.set("allow_unstable=true").unwrap();
+    text.set("law.threshold=1e-3").unwrap();
+    assert_eq!(place(&text.scenario().unwrap_err()), (25, 17));
+}
+
+#[test]
+fn broken_toml_is_refused_with_its_place() {
+    let error = refused("sigma = 1\nduration = \n");
+    assert_eq!(place(&error).0, 2);
+    assert!(error.message.starts_with("not TOML: "), "{error}");
+    assert!(refused("").message.contains("empty"));
+    assert!(refused(&"[".repeat(100_000)).message.starts_with("not TOML"));
+    assert!(refused(&format!("a={}", "[".repeat(100_000))).message.starts_with("not TOML"));
+    assert!(refused("sigma = 1\nsigma = 2").message.contains("duplicate key"));
+}
+
+proptest::proptest! {
+    #[test]
+    fn no_text_makes_the_reader_panic(at in 0..SMALL.len(), cut in 0..40usize, put in ".{0,6}") {
+        let end = (at + cut).min(SMALL.len());
+        let _ = read(&format!("{}{put}{}", &SMALL[..at], &SMALL[end..]));
+    }
+
+    #[test]
+    fn no_assignment_makes_the_reader_panic(assignment in "[a-z.=\\[\\]{}\"0-9 ]{0,20}") {
+        let _ = with(&[&assignment]);
+    }
+}
