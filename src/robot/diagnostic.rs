@@ -1,0 +1,52 @@
+//! What a reader has to say about a file: severity, place and a sentence.
+
+use std::fmt;
+
+/// How much a [`Diagnostic`] matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Worth knowing; nothing is wrong.
+    Note,
+    /// Doubtful; the robot is usable and the message says how the file was understood.
+    Warning,
+    /// Wrong; what it touches can not be used.
+    Error,
+}
+
+impl Severity {
+    /// The severity as one lower-case word: `error`, `warning` or `note`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Severity::Note => "note",
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        }
+    }
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// One finding in a file, with its place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Diagnostic {
+    /// How much it matters.
+    pub severity: Severity,
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column in characters, counted from 1.
+    pub column: usize,
+    /// What is wrong, and what to do about it, as a sentence.
+    pub message: String,
+}
+
+impl fmt::Display for Diagnostic {
+    /// Writes `line:column: severity: message`, so that a file name and a colon can stand in front.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}: {}", self.line, self.column, self.severity, self.message)
+    }
+}

@@ -1,0 +1,178 @@
+//! From the joints along a path to constants and motions about z.
+
+use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Translation3, Vector3};
+
+use super::kinematics::{Frame, Motion, Segment};
+use super::path::{ChainError, Step};
+use super::{Chain, ChainJoint, Joint, Limits, Robot};
+
+/// A moving joint of the path: `|multiplier| q_column + offset` along or about `direction`, in the frame
+/// that `before` leads to.
+struct Moving {
+    before: IsometryMatrix3<f64>,
+    motion: Motion,
+    column: usize,
+    multiplier: f64,
+}
+
+/// Returns the chain of a path whose joints are sound.
+///
+/// Going down a joint is `origin M(axis, x)`; going up is the inverse, `M(-axis, x) origin^-1`. With
+/// `M(axis, x) = R M(z, x) R^T`, where R turns z onto the axis, all constants between two motions merge. A
+/// negative multiplier turns the axis round, and an offset is a constant motion, so only `|multiplier|` stays.
+pub(super) fn fold(robot: &Robot, steps: &[Step], base: &str, tip: &str) -> Result<Chain, ChainError> {
+    let mut columns = Columns::default();
+    let mut moving: Vec<Moving> = Vec::new();
+    let mut constant = IsometryMatrix3::identity();
+    for step in steps {
+        let joint = &robot.joints[step.joint];
+        if !step.upward {
+            constant *= joint.origin;
+        }
+        if joint.kind.is_movable() {
+            let column = columns.place(robot, step.joint)?;
+            let (multiplier, offset) =
+                joint.mimic.map_or((1.0, 0.0), |mimic| (mimic.multiplier, mimic.offset));
+            let sign = if step.upward { -1.0 } else { 1.0 } * multiplier.signum();
+            let onto_axis = turn_of_z_onto(joint.axis * sign);
+            let motion = if joint.kind.is_rotation() { Motion::Turn } else { Motion::Shift };
+            let direction_offset = offset * multiplier.signum();
+            let before = constant * onto_axis * constant_motion(motion, direction_offset);
+            moving.push(Moving { before, motion, column, multiplier: multiplier.abs() });
+            constant = IsometryMatrix3::from_parts(Translation3::identity(), onto_axis.inverse());
+        }
+        if step.upward {
+            constant *= joint.origin.inverse();
+        }
+    }
+    if moving.is_empty() {
+        return Err(ChainError::Rigid { base: base.to_owned(), tip: tip.to_owned() });
+    }
+    let reach = reach(&moving, &constant, &columns.joints);
+    Ok(assemble(&moving, &constant, columns.joints, reach, base, tip))
+}
+
+fn assemble(
+    moving: &[Moving],
+    last: &IsometryMatrix3<f64>,
+    joints: Vec<ChainJoint>,
+    reach: f64,
+    base: &str,
+    tip: &str,
+) -> Chain {
+    let after = moving.iter().skip(1).map(|next| &next.before).chain([last]);
+    let segments = moving
+        .iter()
+        .zip(after)
+        .map(|(own, after)| Segment {
+            after: Frame::new(after),
+            multiplier: own.multiplier,
+            column: own.column,
+            motion: own.motion,
+        })
+        .collect();
+    let start = Frame::new(&moving[0].before);
+    Chain { base: base.to_owned(), tip: tip.to_owned(), joints, reach, start, segments }
+}
+
+/// Returns a rotation whose third column is the unit vector `axis`; exact when the axis is a coordinate axis.
+fn turn_of_z_onto(axis: Vector3<f64>) -> Rotation3<f64> {
+    let least = axis.iamin();
+    let x = Vector3::ith(least, 1.0).cross(&axis).normalize();
+    Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, axis.cross(&x), axis]))
+}
+
+/// Returns the motion about or along z by a constant.
+fn constant_motion(motion: Motion, value: f64) -> IsometryMatrix3<f64> {
+    match motion {
+        _ if value == 0.0 => IsometryMatrix3::identity(),
+        Motion::Turn => IsometryMatrix3::from_parts(
+            Translation3::identity(),
+            Rotation3::from_axis_angle(&Vector3::z_axis(), value),
+        ),
+        Motion::Shift => IsometryMatrix3::translation(0.0, 0.0, value),
+    }
+}
+
+/// Returns the sum of the constant lengths after the first motion and of the prismatic travels.
+fn reach(moving: &[Moving], last: &IsometryMatrix3<f64>, joints: &[ChainJoint]) -> f64 {
+    let lengths = moving.iter().skip(1).map(|next| &next.before).chain([last]);
+    let constant: f64 = lengths.map(|pose| pose.translation.vector.norm()).sum();
+    let travels = moving.iter().filter(|own| own.motion == Motion::Shift).map(|own| {
+        let limits = joints[own.column].limits;
+        own.multiplier * limits.lower.abs().max(limits.upper.abs())
+    });
+    constant + travels.sum::<f64>()
+}
+
+/// The columns of the chain in order of first appearance.
+#[derive(Default)]
+struct Columns {
+    drivers: Vec<usize>,
+    joints: Vec<ChainJoint>,
+}
+
+impl Columns {
+    /// Returns the column of a joint of the path: its own, or that of the joint it follows.
+    fn place(&mut self, robot: &Robot, index: usize) -> Result<usize, ChainError> {
+        let joint = &robot.joints[index];
+        let driver = joint.mimic.map_or(index, |mimic| mimic.driver);
+        let column = self.drivers.iter().position(|&known| known == driver).unwrap_or_else(|| {
+            let driving = &robot.joints[driver];
+            self.drivers.push(driver);
+            self.joints.push(ChainJoint {
+                name: driving.name.clone(),
+                kind: driving.kind,
+                limits: driving.limits,
+            });
+            self.drivers.len() - 1
+        });
+        let limits = &mut self.joints[column].limits;
+        *limits = narrowed(*limits, joint);
+        if limits.lower > limits.upper {
+            return Err(ChainError::EmptyRange {
+                joint: robot.joints[driver].name.clone(),
+                follower: joint.name.clone(),
+            });
+        }
+        Ok(column)
+    }
+}
+
+/// Returns a driver's limits narrowed to what one of its followers allows.
+pub(super) fn narrowed(driver: Limits, follower: &Joint) -> Limits {
+    let Some(mimic) = follower.mimic else { return driver };
+    let at = |position: f64| (position - mimic.offset) / mimic.multiplier;
+    let (a, b) = (at(follower.limits.lower), at(follower.limits.upper));
+    Limits {
+        lower: driver.lower.max(a.min(b)),
+        upper: driver.upper.min(a.max(b)),
+        velocity: driver.velocity.min(follower.limits.velocity / mimic.multiplier.abs()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_z_onto_coordinate_axes_exactly() {
+        for i in 0..3 {
+            for sign in [1.0, -1.0] {
+                let axis = Vector3::ith(i, sign);
+                let turn = turn_of_z_onto(axis);
+                assert_eq!(turn * Vector3::z(), axis);
+                assert_eq!(turn.matrix().determinant(), 1.0);
+                assert!(turn.matrix().iter().all(|&entry| entry == 0.0 || entry.abs() == 1.0));
+            }
+        }
+    }
+
+    #[test]
+    fn turns_z_onto_a_skew_axis() {
+        let axis = Vector3::new(1.0, -2.0, 3.0).normalize();
+        let turn = turn_of_z_onto(axis);
+        assert!((turn * Vector3::z() - axis).norm() < 1e-15);
+        assert!((turn.matrix().transpose() * turn.matrix() - Matrix3::identity()).norm() < 1e-15);
+    }
+}

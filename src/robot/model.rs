@@ -1,0 +1,290 @@
+//! The robot as it is computed with: flat arrays, parents before children, indices.
+
+use std::collections::HashMap;
+use std::fmt;
+use std::path::Path;
+
+use nalgebra::{IsometryMatrix3, Vector3};
+
+use super::path::{self, ChainError};
+use super::tree::TreeRows;
+use super::urdf;
+use super::{Chain, Diagnostic, ReadError, UrdfError, UrdfOptions};
+
+/// How a joint moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum JointKind {
+    /// Turns about its axis between limits [rad].
+    Revolute,
+    /// Turns about its axis without end; the angle is one unwrapped number [rad].
+    Continuous,
+    /// Slides along its axis [m].
+    Prismatic,
+    /// Does not move.
+    Fixed,
+    /// Six free directions; no chain passes through it.
+    Floating,
+    /// Two translations and a rotation in a plane; no chain passes through it.
+    Planar,
+    /// Three rotations; no chain passes through it.
+    Spherical,
+}
+
+impl JointKind {
+    /// Every kind, in the order of the URDF standard.
+    pub const ALL: [JointKind; 7] = [
+        JointKind::Revolute,
+        JointKind::Continuous,
+        JointKind::Prismatic,
+        JointKind::Fixed,
+        JointKind::Floating,
+        JointKind::Planar,
+        JointKind::Spherical,
+    ];
+
+    /// The word that URDF uses for it.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            JointKind::Revolute => "revolute",
+            JointKind::Continuous => "continuous",
+            JointKind::Prismatic => "prismatic",
+            JointKind::Fixed => "fixed",
+            JointKind::Floating => "floating",
+            JointKind::Planar => "planar",
+            JointKind::Spherical => "spherical",
+        }
+    }
+
+    /// Whether the joint has exactly one degree of freedom (revolute, continuous, prismatic).
+    pub fn is_movable(self) -> bool {
+        matches!(self, JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic)
+    }
+
+    /// Whether the joint turns about one axis (revolute, continuous).
+    pub fn is_rotation(self) -> bool {
+        matches!(self, JointKind::Revolute | JointKind::Continuous)
+    }
+
+    /// Whether a chain can carry the joint: one degree of freedom or none.
+    pub fn is_supported(self) -> bool {
+        self.is_movable() || self == JointKind::Fixed
+    }
+}
+
+impl fmt::Display for JointKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// The range and speed a joint allows. What the file does not say is infinite: unknown, and not checked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Smallest position [rad] or [m].
+    pub lower: f64,
+    /// Largest position [rad] or [m].
+    pub upper: f64,
+    /// Largest speed in either direction [rad/s] or [m/s].
+    pub velocity: f64,
+}
+
+impl Limits {
+    /// No limit known.
+    pub const UNLIMITED: Limits =
+        Limits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: f64::INFINITY };
+
+    /// Whether `position` is inside the range; a NaN is not.
+    pub fn contains(&self, position: f64) -> bool {
+        self.lower <= position && position <= self.upper
+    }
+}
+
+/// A joint that follows another: `position = multiplier * driver + offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mimic {
+    /// Index of the joint that is followed; never a mimic joint itself, because mimic chains are folded.
+    pub driver: usize,
+    /// Ratio of the positions (and of the velocities), not zero.
+    pub multiplier: f64,
+    /// Position at driver position zero [rad] or [m].
+    pub offset: f64,
+}
+
+/// Why a joint or a link can not be used, and where the file says so.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Defect {
+    /// The reason, as a sentence.
+    pub reason: String,
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column, counted from 1.
+    pub column: usize,
+}
+
+/// A rigid body.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Link {
+    /// The link's name, unique in the robot.
+    pub name: String,
+    /// Index of the joint above it; `None` for a root.
+    pub parent_joint: Option<usize>,
+    /// Set when no chain may pass through the link.
+    pub defect: Option<Defect>,
+}
+
+/// A joint between two links.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Joint {
+    /// The joint's name.
+    pub name: String,
+    /// How it moves.
+    pub kind: JointKind,
+    /// Index of the link above.
+    pub parent: usize,
+    /// Index of the link below; always greater than `parent`.
+    pub child: usize,
+    /// Pose of the child's frame in the parent's at joint position zero.
+    pub origin: IsometryMatrix3<f64>,
+    /// Unit axis in the child's frame.
+    pub axis: Vector3<f64>,
+    /// The joint's own limits (of a mimic joint too).
+    pub limits: Limits,
+    /// Set when the joint follows another.
+    pub mimic: Option<Mimic>,
+    /// Set when no chain may pass through the joint.
+    pub defect: Option<Defect>,
+}
+
+/// A joint that the file has but the tree can not hold (an undefined link, a second parent, a loop).
+#[derive(Debug, Clone)]
+pub(super) struct Stray {
+    pub(super) name: String,
+    pub(super) parent: String,
+    pub(super) child: String,
+    pub(super) defect: Defect,
+}
+
+/// A robot: links and joints in flat arrays, every parent before its children.
+///
+/// A robot never changes; everything that is computed lives in a [`ChainScratch`](super::ChainScratch).
+#[derive(Debug, Clone)]
+pub struct Robot {
+    pub(super) name: String,
+    pub(super) links: Vec<Link>,
+    pub(super) joints: Vec<Joint>,
+    pub(super) strays: Vec<Stray>,
+    pub(super) link_by_name: HashMap<String, usize>,
+    pub(super) diagnostics: Vec<Diagnostic>,
+}
+
+impl Robot {
+    /// Returns the robot that a URDF text describes, with everything found wrong in it as
+    /// [`diagnostics`](Robot::diagnostics). A defective joint spoils only the chains through it.
+    ///
+    /// # Errors
+    /// [`UrdfError`] when no robot can be made at all: the text is not XML, not URDF (SDF, MJCF, xacro), holds
+    /// a DTD, has no link, or exceeds the size caps. The error carries every finding with its place.
+    ///
+    /// ```
+    /// use kinstep::robot::Robot;
+    /// let robot = Robot::from_urdf(
+    ///     r#"<robot name="pendulum">
+    ///          <link name="base"/> <link name="bob"/>
+    ///          <joint name="pivot" type="continuous">
+    ///            <parent link="base"/> <child link="bob"/> <axis xyz="0 1 0"/>
+    ///          </joint>
+    ///        </robot>"#,
+    /// )?;
+    /// assert_eq!(robot.joints()[0].name, "pivot");
+    /// # Ok::<(), kinstep::robot::UrdfError>(())
+    /// ```
+    pub fn from_urdf(text: &str) -> Result<Robot, UrdfError> {
+        urdf::read_text(text, &UrdfOptions::default())
+    }
+
+    /// As [`Robot::from_urdf`], with options.
+    ///
+    /// # Errors
+    /// As [`Robot::from_urdf`].
+    pub fn from_urdf_with(text: &str, options: &UrdfOptions) -> Result<Robot, UrdfError> {
+        urdf::read_text(text, options)
+    }
+
+    /// As [`Robot::from_urdf_with`], from bytes whose encoding is checked first: UTF-8, with or without a mark.
+    ///
+    /// # Errors
+    /// As [`Robot::from_urdf`]; also when the bytes are not UTF-8 (the message names the encoding).
+    pub fn from_urdf_bytes(bytes: &[u8], options: &UrdfOptions) -> Result<Robot, UrdfError> {
+        urdf::read_bytes(bytes, options)
+    }
+
+    /// As [`Robot::from_urdf_bytes`], from a file; a robot without a name is called after the file.
+    ///
+    /// # Errors
+    /// [`ReadError::File`] when the file can not be read, [`ReadError::Urdf`] as [`Robot::from_urdf`].
+    pub fn from_urdf_file(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<Robot, ReadError> {
+        urdf::read_file(path.as_ref(), options)
+    }
+
+    /// The robot's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// All links, every parent before its children, children in the order of the file.
+    pub fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    /// The joints of the tree, in the order of their child links.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Everything that was found in the file, by place.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
+    /// The link of that name.
+    pub fn link(&self, name: &str) -> Option<&Link> {
+        self.link_by_name.get(name).map(|&index| &self.links[index])
+    }
+
+    /// The joint of that name.
+    pub fn joint(&self, name: &str) -> Option<&Joint> {
+        self.joints.iter().find(|joint| joint.name == name)
+    }
+
+    /// The links that hang from no joint.
+    pub fn roots(&self) -> impl Iterator<Item = &Link> {
+        self.links.iter().filter(|link| link.parent_joint.is_none())
+    }
+
+    /// The links from which no joint hangs: the usual tips.
+    pub fn leaves(&self) -> impl Iterator<Item = &Link> {
+        let mut has_child = vec![false; self.links.len()];
+        for joint in &self.joints {
+            has_child[joint.parent] = true;
+        }
+        self.links.iter().zip(has_child).filter(|(_, has_child)| !has_child).map(|(link, _)| link)
+    }
+
+    /// The tree as people draw it: one row per link, depth first, with the joint above it.
+    pub fn tree(&self) -> TreeRows<'_> {
+        TreeRows::new(self)
+    }
+
+    /// Returns the directed path from link `base` to link `tip`, in either direction and through a common
+    /// ancestor if need be, ready for kinematics.
+    ///
+    /// # Errors
+    /// [`ChainError`]: a link that does not exist (with the nearest names), `base` equal to `tip`, links that
+    /// no joints connect, nothing movable between them, or a joint on the way that is defective or of a kind
+    /// that a chain can not carry.
+    pub fn chain(&self, base: &str, tip: &str) -> Result<Chain, ChainError> {
+        path::chain(self, base, tip)
+    }
+}

@@ -1,0 +1,108 @@
+//! Why no robot could be made of a text or a file.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::robot::{Diagnostic, Severity};
+
+/// Why no robot can be made of a text: every finding, with its place.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{}", summary(.diagnostics))]
+pub struct UrdfError {
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl UrdfError {
+    pub(super) fn new(diagnostics: Vec<Diagnostic>) -> UrdfError {
+        UrdfError { diagnostics }
+    }
+
+    pub(super) fn at(line: usize, column: usize, message: String) -> UrdfError {
+        UrdfError::new(vec![Diagnostic { severity: Severity::Error, line, column, message }])
+    }
+
+    pub(super) fn whole_file(message: String) -> UrdfError {
+        UrdfError::at(1, 1, message)
+    }
+
+    /// Everything that was found, by place; at least one has [`Severity::Error`].
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
+    /// The first finding of severity error.
+    pub fn first(&self) -> Option<&Diagnostic> {
+        first_error(&self.diagnostics)
+    }
+}
+
+fn first_error(diagnostics: &[Diagnostic]) -> Option<&Diagnostic> {
+    diagnostics.iter().find(|found| found.severity == Severity::Error)
+}
+
+fn summary(diagnostics: &[Diagnostic]) -> String {
+    let errors = diagnostics.iter().filter(|found| found.severity == Severity::Error).count();
+    let first = first_error(diagnostics)
+        .map(|found| format!("line {}, column {}: {}", found.line, found.column, found.message));
+    match (first, errors) {
+        (Some(first), 2) => format!("{first} (and 1 more error)"),
+        (Some(first), 3..) => format!("{first} (and {} more errors)", errors - 1),
+        (first, _) => first.unwrap_or_else(|| "the URDF can not be read".to_owned()),
+    }
+}
+
+/// Why no robot could be read from a file.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The file can not be read.
+    #[error("can not read {}: {}{}", .path.display(), plain(.source), hint(.path, .directory.as_deref(), .source))]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The working directory from which a relative path was looked up.
+        directory: Option<PathBuf>,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The file is read, but no robot can be made of it.
+    #[error("{}: {error}", .path.display())]
+    Urdf {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: UrdfError,
+    },
+}
+
+impl ReadError {
+    pub(super) fn file(path: &Path, source: io::Error) -> ReadError {
+        let directory = path.is_relative().then(|| std::env::current_dir().ok()).flatten();
+        ReadError::File { path: path.to_owned(), directory, source }
+    }
+}
+
+fn plain(source: &io::Error) -> String {
+    match source.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
+        io::ErrorKind::PermissionDenied => "reading it is not permitted".to_owned(),
+        _ => source.to_string(),
+    }
+}
+
+fn hint(path: &Path, directory: Option<&Path>, source: &io::Error) -> String {
+    let seen =
+        directory.map(|directory| format!(" (looked up from {})", directory.display())).unwrap_or_default();
+    let remedy = match source.kind() {
+        io::ErrorKind::NotFound if path.to_string_lossy().starts_with("package://") => {
+            "; give the file's own path, `package://` needs ROS"
+        }
+        io::ErrorKind::NotFound => "; check the spelling and the working directory",
+        io::ErrorKind::IsADirectory => "; name the .urdf file inside it",
+        _ => "",
+    };
+    format!("{seen}{remedy}")
+}

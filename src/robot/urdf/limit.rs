@@ -1,0 +1,122 @@
+//! `<limit>`: what the file says, what the standard says when the file does not, and what is nonsense.
+
+use std::fmt::Write;
+
+use roxmltree::Node;
+
+use super::document::Version;
+use super::element::{self, Known};
+use super::joint::Reader;
+use super::number;
+use crate::robot::JointKind;
+use crate::robot::names::quote;
+
+/// From this size on a limit is taken as "unlimited": real files write 1e16 or 1e308.
+const UNLIMITED: f64 = 1e12;
+
+/// Reads the limits of a joint and writes them down for urdf-rs.
+///
+/// A revolute or prismatic joint needs `<limit>`. Before URDF 1.2, one missing bound is 0, as the standard
+/// says; with both missing the range is unknown. From 1.2 on a missing bound is infinite.
+pub(super) fn read(reader: &mut Reader<'_, '_, '_, '_>) {
+    let is_bounded = matches!(reader.joint.kind, Some(JointKind::Revolute | JointKind::Prismatic));
+    let Some(node) = reader.child(Known::LIMIT) else {
+        if is_bounded {
+            missing(reader);
+        }
+        return write(reader, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
+    };
+    if !reader.joint.is_movable() {
+        return;
+    }
+    let velocity = speed(reader, node, "velocity").unwrap_or(f64::INFINITY);
+    let _ = speed(reader, node, "effort");
+    let (lower, upper) = if is_bounded { bounds(reader, node) } else { (f64::NEG_INFINITY, f64::INFINITY) };
+    if velocity == 0.0 {
+        reader.warn(element::offset(node), "its velocity limit is 0: this joint can never move");
+    }
+    write(reader, lower, upper, velocity);
+}
+
+fn write(reader: &mut Reader<'_, '_, '_, '_>, lower: f64, upper: f64, velocity: f64) {
+    let _ = write!(
+        reader.joint.values,
+        "<limit lower=\"{lower:?}\" upper=\"{upper:?}\" effort=\"0\" velocity=\"{velocity:?}\"/>"
+    );
+}
+
+fn missing(reader: &mut Reader<'_, '_, '_, '_>) {
+    let offset = reader.joint.offset;
+    let kind = reader.joint.kind.map_or("", JointKind::as_str);
+    if reader.options.assume_unlimited {
+        reader.warn(offset, &format!("is {kind} and has no `<limit>`; taken as unlimited"));
+    } else {
+        let cause = format!(
+            "is {kind} and has no `<limit>`; add `<limit lower=\"...\" upper=\"...\" effort=\"...\" \
+             velocity=\"...\"/>`, or ask to assume it unlimited"
+        );
+        reader.fail(offset, cause);
+    }
+}
+
+fn bounds(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>) -> (f64, f64) {
+    let lower = value(reader, node, "lower");
+    let upper = value(reader, node, "upper");
+    let is_given = |name| element::attribute(node, name).is_some();
+    let place = element::offset(node);
+    if reader.version < Version::V1_2 {
+        match (is_given("lower"), is_given("upper")) {
+            (false, false) => {
+                reader.warn(
+                    place,
+                    "has neither `lower` nor `upper` limit: its range is unknown and not checked",
+                );
+            }
+            (false, true) => reader.warn(place, "has no `lower` limit; the standard takes it as 0"),
+            (true, false) => reader.warn(place, "has no `upper` limit; the standard takes it as 0"),
+            (true, true) => {}
+        }
+    }
+    let one_is_missing = reader.version < Version::V1_2 && is_given("lower") != is_given("upper");
+    let missing = |infinite: f64| if one_is_missing { 0.0 } else { infinite };
+    let (lower, upper) =
+        (lower.unwrap_or(missing(f64::NEG_INFINITY)), upper.unwrap_or(missing(f64::INFINITY)));
+    if lower > upper {
+        reader.fail(place, format!("its lower limit {lower} is greater than its upper limit {upper}"));
+    } else if lower == upper {
+        reader.warn(place, &format!("its lower and upper limits are both {lower}: the joint can not move"));
+    }
+    (lower, upper)
+}
+
+/// Returns a velocity or effort limit, not negative.
+fn speed(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>, name: &str) -> Option<f64> {
+    let value = value(reader, node, name)?;
+    if value < 0.0 {
+        let place = element::attribute(node, name).map_or(element::offset(node), |found| found.range().start);
+        reader.fail(place, format!("its {name} limit {value} is negative"));
+    }
+    Some(value)
+}
+
+/// Returns one value of `<limit>`, infinite when it is too large to mean anything.
+fn value(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>, name: &str) -> Option<f64> {
+    let attribute = element::attribute(node, name)?;
+    let place = attribute.range().start;
+    match number::number(attribute.value()) {
+        Ok(value) if value.abs() < UNLIMITED => Some(value),
+        Ok(value) => {
+            if name != "effort" {
+                reader.note(
+                    place,
+                    &format!("its {name} limit {} is taken as unlimited", quote(attribute.value())),
+                );
+            }
+            Some(f64::INFINITY.copysign(value))
+        }
+        Err(cause) => {
+            reader.fail(place, format!("`{name}` of `<limit>`: {cause}"));
+            None
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The findings of one reading, in one place.
+
+use super::places::Places;
+use crate::robot::{Defect, Diagnostic, Severity, names};
+
+/// How many nearest-name searches one report pays for; a file with more misspellings than that is hopeless.
+const SUGGESTIONS: usize = 20;
+
+/// Collects findings by byte offset.
+pub(super) struct Report<'a> {
+    places: Places<'a>,
+    found: Vec<(usize, Severity, String)>,
+    suggestions_left: usize,
+}
+
+impl<'a> Report<'a> {
+    pub(super) fn new(text: &'a str) -> Report<'a> {
+        Report { places: Places::new(text), found: Vec::new(), suggestions_left: SUGGESTIONS }
+    }
+
+    pub(super) fn error(&mut self, offset: usize, message: impl Into<String>) {
+        self.found.push((offset, Severity::Error, message.into()));
+    }
+
+    pub(super) fn warning(&mut self, offset: usize, message: impl Into<String>) {
+        self.found.push((offset, Severity::Warning, message.into()));
+    }
+
+    pub(super) fn note(&mut self, offset: usize, message: impl Into<String>) {
+        self.found.push((offset, Severity::Note, message.into()));
+    }
+
+    /// The line of an offset, to be named in a message.
+    pub(super) fn line(&self, offset: usize) -> usize {
+        self.places.line(offset)
+    }
+
+    pub(super) fn defect(&self, offset: usize, reason: String) -> Defect {
+        let (line, column) = self.places.at(offset);
+        Defect { reason, line, column }
+    }
+
+    /// Returns "; did you mean ...?" for a name that is not known.
+    pub(super) fn suggestion<'n>(&mut self, name: &str, known: impl IntoIterator<Item = &'n str>) -> String {
+        if self.suggestions_left == 0 {
+            return String::new();
+        }
+        self.suggestions_left -= 1;
+        names::suggestion(&names::nearest(name, known))
+    }
+
+    /// Returns the findings by place.
+    pub(super) fn finish(mut self) -> Vec<Diagnostic> {
+        self.found.sort_by_key(|&(offset, severity, _)| (offset, std::cmp::Reverse(severity)));
+        let places = &self.places;
+        self.found
+            .into_iter()
+            .map(|(offset, severity, message)| {
+                let (line, column) = places.at(offset);
+                Diagnostic { severity, line, column, message }
+            })
+            .collect()
+    }
+}

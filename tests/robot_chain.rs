@@ -1,0 +1,40 @@
+//! Chains through small robots: direction, folding, mimic joints, refusals.
+
+use std::f64::consts::FRAC_PI_2;
+
+use kinstep::nalgebra::Vector6;
+use kinstep::robot::{ChainError, Robot};
+
+const DEMO: &str = r#"<robot name="demo">
+  <link name="base"/><link name="a"/><link name="b"/><link name="tip"/>
+  <joint name="j1" type="revolute"><origin xyz="0 0 1"/><parent link="base"/><child link="a"/>
+    <axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="2"/></joint>
+  <joint name="j2" type="prismatic"><parent link="a"/><child link="b"/>
+    <axis xyz="1 0 0"/><limit lower="0" upper="0.5" effort="1" velocity="1"/></joint>
+  <joint name="j3" type="fixed"><origin xyz="1 0 0"/><parent link="b"/><child link="tip"/></joint>
+</robot>"#;
+
+#[test]
+fn poses_and_differentiates_a_turn_and_a_slide() {
+    let robot = Robot::from_urdf(DEMO).unwrap();
+    let chain = robot.chain("base", "tip").unwrap();
+    assert_eq!(chain.joints().iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>(), ["j1", "j2"]);
+    assert_eq!(chain.reach(), 1.5);
+    let mut scratch = chain.scratch();
+    let posed = chain.forward(&[FRAC_PI_2, 0.25], &mut scratch);
+    let position = posed.pose().translation;
+    assert!((position.vector - kinstep::nalgebra::Vector3::new(0.0, 1.25, 1.0)).norm() < 1e-15);
+    let mut columns = [Vector6::zeros(); 2];
+    posed.geometric_jacobian(&mut columns);
+    assert!((columns[0] - Vector6::new(-1.25, 0.0, 0.0, 0.0, 0.0, 1.0)).norm() < 1e-15);
+    assert!((columns[1] - Vector6::new(0.0, 1.0, 0.0, 0.0, 0.0, 0.0)).norm() < 1e-15);
+}
+
+#[test]
+fn refuses_an_unknown_tip_with_the_nearest_names() {
+    let robot = Robot::from_urdf(DEMO).unwrap();
+    let error = robot.chain("base", "tipp").unwrap_err();
+    assert_eq!(error.to_string(), "the robot has no link `tipp`; did you mean `tip`?");
+    assert!(matches!(robot.chain("tip", "tip"), Err(ChainError::SameLink { .. })));
+    assert!(matches!(robot.chain("b", "tip"), Err(ChainError::Rigid { .. })));
+}
