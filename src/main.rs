@@ -1,3 +1,7 @@
 //! The `kinstep` command.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    kinstep::cli::run(std::env::args_os())
+}

@@ -1,1 +1,49 @@
-//! (room: cli)
+//! The command line: arguments in, a document out, an exit code for scripts.
+
+mod arguments;
+mod failure;
+mod formula_schema;
+mod output;
+mod robot;
+mod schema;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+use failure::{Exit, Failure};
+use output::Output;
+
+/// Runs the command that the arguments (the program's name first) ask for, and returns the exit code:
+/// 0 done, 1 a check failed, 2 usage or scenario, 3 robot, 4 formula, 5 the run stopped, 6 files.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let wants_json = arguments.iter().any(|argument| argument == "--json");
+    let mut output = Output::new(wants_json);
+    let outcome = match Arguments::try_parse_from(&arguments) {
+        Ok(arguments) => dispatch(&arguments, &mut output),
+        Err(e) if !e.use_stderr() => output.help(&e.render()).map(|()| Exit::Done),
+        Err(e) => Err(Failure::usage(usage(&e))),
+    };
+    let exit = outcome.unwrap_or_else(|failure| output.failure(&failure));
+    ExitCode::from(exit as u8)
+}
+
+/// The parser's own sentence, with its hints.
+fn usage(error: &clap::Error) -> String {
+    if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return "name a command; `kinstep --help` lists them with examples".to_owned();
+    }
+    let text = error.render().to_string();
+    let text = text.strip_prefix("error: ").unwrap_or(&text);
+    text.replace("\n\nFor more information, try '--help'.", "").trim().to_owned()
+}
+
+fn dispatch(arguments: &Arguments, output: &mut Output) -> Result<Exit, Failure> {
+    match &arguments.command {
+        Command::Robot(command) => robot::run(command, output),
+        Command::Schema(command) => schema::run(*command, output),
+    }
+}

@@ -147,32 +147,17 @@ fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), Scena
             || "a line ends at one of `to` (world) and `displacement` (from the tip); give one".to_owned();
         require(ends == 1, at, problem)?;
     }
-    check_axes(at, path, task)?;
+    check_points(at, path, task)?;
     path.turn.as_ref().map_or(Ok(()), |turn| check_turn(&at.key("turn"), turn, task))
 }
 
-/// Points and amplitudes have 2 numbers (the plane's or x and y) or 3.
-fn check_axes(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), ScenarioError> {
-    let points = [
-        ("to", &path.to),
-        ("displacement", &path.displacement),
-        ("center", &path.center),
-        ("amplitudes", &path.amplitudes),
-    ];
-    for (name, value) in points {
+/// Points have x, y and z; in the plane the z may be left out.
+fn check_points(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), ScenarioError> {
+    for (name, value) in [("to", &path.to), ("displacement", &path.displacement), ("center", &path.center)] {
         let Some(value) = value else { continue };
-        let wanted: &[usize] = if task == TaskKind::PositionXy { &[2, 3] } else { &[3] };
-        let wanted = if name == "amplitudes" { &[2, 3] } else { wanted };
-        require(wanted.contains(&value.len()), &at.key(name), || {
-            let counts: Vec<String> = wanted.iter().map(usize::to_string).collect();
-            format!("expected {} numbers, got {}", counts.join(" or "), value.len())
-        })?;
-    }
-    let axes = path.amplitudes.as_ref().map_or(0, Vec::len);
-    for (name, value) in [("frequencies", &path.frequencies), ("phases", &path.phases)] {
-        let got = value.as_ref().map_or(axes, Vec::len);
-        require(got == axes, &at.key(name), || {
-            format!("expected {axes} numbers, one per amplitude, got {got}")
+        let planar = task == TaskKind::PositionXy;
+        require(value.len() == 3 || (planar && value.len() == 2), &at.key(name), || {
+            format!("expected {} numbers, got {}", if planar { "2 or 3" } else { "3" }, value.len())
         })?;
     }
     Ok(())

@@ -12,6 +12,7 @@ mod model;
 mod overrides;
 mod path_spec;
 mod real;
+mod robots;
 #[cfg(test)]
 mod tests;
 
@@ -22,3 +23,4 @@ pub use key_path::{KeyPath, Step};
 pub use model::{ArmSpec, LawKind, LawSpec, Mount, Scenario, Start, TaskKind};
 pub use path_spec::{PathKind, PathSpec, Plane, TimeLawKind, TurnSpec};
 pub use real::Real;
+pub use robots::RobotSource;

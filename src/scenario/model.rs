@@ -146,7 +146,10 @@ impl Mount {
 
 impl Scenario {
     /// Returns the scenario as TOML that reads back as the same scenario.
-    #[expect(clippy::missing_panics_doc, reason = "a scenario is tables, text and numbers, which TOML can write")]
+    #[expect(
+        clippy::missing_panics_doc,
+        reason = "a scenario is tables, text and numbers, which TOML can write"
+    )]
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("a scenario has only tables with text keys, finite numbers and text")
     }

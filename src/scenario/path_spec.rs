@@ -24,15 +24,15 @@ pub struct PathSpec {
     /// End of a line from its beginning, along world axes [m], 2 or 3 of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacement: Option<Vec<Real>>,
-    /// Amplitudes of a Lissajous curve [m], 2 or 3 of them.
+    /// Half width and half height of a Lissajous curve [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub amplitudes: Option<Vec<Real>>,
-    /// Frequencies of a Lissajous curve, in turns per turn of the angle, as many as amplitudes.
+    pub amplitudes: Option<[Real; 2]>,
+    /// Periods of a Lissajous curve per turn of the angle, in x and in y.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub frequencies: Option<Vec<Real>>,
-    /// Phases of a Lissajous curve [rad], as many as amplitudes. Default: zeros.
+    pub frequencies: Option<[Real; 2]>,
+    /// Phase of the x part of a Lissajous curve [rad]. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub phases: Option<Vec<Real>>,
+    pub phase: Option<Real>,
     /// Plane that the curve is drawn in, in world axes. Default: xy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane: Option<Plane>,
@@ -69,7 +69,7 @@ pub enum PathKind {
     Astroid,
     /// A straight line.
     Line,
-    /// Amplitudes times sin(frequency a + phase), axis by axis.
+    /// (a_x sin(f_x a + phase), a_y sin(f_y a)).
     Lissajous,
     /// radius cos(petals a) (cos a, sin a).
     Rose,
@@ -86,12 +86,6 @@ pub enum Plane {
     Yz,
     /// World z and x.
     Zx,
-    /// World y and x.
-    Yx,
-    /// World z and y.
-    Zy,
-    /// World x and z.
-    Xz,
 }
 
 /// How the angle of a path runs from its beginning to its end.
@@ -151,7 +145,7 @@ impl PathKind {
         let mut known: Vec<&str> = match self {
             Self::Circle | Self::Tricuspid | Self::Astroid => BY_ANGLE.to_vec(),
             Self::Rose => [&BY_ANGLE[..], &["petals"]].concat(),
-            Self::Lissajous => [&BY_ANGLE[..5], &["amplitudes", "frequencies", "phases"]].concat(),
+            Self::Lissajous => [&BY_ANGLE[..5], &["amplitudes", "frequencies", "phase"]].concat(),
             Self::Line => vec!["to", "displacement"],
         };
         known.extend(["time_law", "turn"]);
@@ -170,7 +164,7 @@ impl PathSpec {
             displacement: None,
             amplitudes: None,
             frequencies: None,
-            phases: None,
+            phase: None,
             plane: None,
             rotation: None,
             from: None,
@@ -190,7 +184,7 @@ impl PathSpec {
             ("displacement", self.displacement.is_some()),
             ("amplitudes", self.amplitudes.is_some()),
             ("frequencies", self.frequencies.is_some()),
-            ("phases", self.phases.is_some()),
+            ("phase", self.phase.is_some()),
             ("plane", self.plane.is_some()),
             ("rotation", self.rotation.is_some()),
             ("from", self.from.is_some()),

@@ -1,0 +1,90 @@
+//! Which robot a scenario means: one of the embedded ones, or a file.
+
+use std::path::{Path, PathBuf};
+
+use super::error::{ErrorKind, Place, ScenarioError, suggestion};
+use crate::robot::{ReadError, Robot, UrdfOptions, embedded};
+
+/// Where a robot's URDF comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RobotSource {
+    /// Embedded in the library, by name.
+    Embedded(String),
+    /// A file.
+    File(PathBuf),
+}
+
+impl RobotSource {
+    /// Returns what `reference` means: an embedded robot's name, or a path that is tried from `folder` and then
+    /// from the working directory.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] of kind [`ErrorKind::Scenario`] for a name (no path, no extension) that is neither, with
+    /// the nearest names. A path to a file that is not there is found out by [`RobotSource::read`].
+    pub fn find(reference: &str, folder: Option<&Path>) -> Result<Self, ScenarioError> {
+        let names = embedded::names();
+        if names.contains(&reference) {
+            return Ok(Self::Embedded(reference.to_owned()));
+        }
+        let here = PathBuf::from(reference);
+        let beside = folder.map(|folder| folder.join(&here));
+        if let Some(found) = beside.iter().chain([&here]).find(|path| path.exists() && !reference.is_empty())
+        {
+            return Ok(Self::File(found.clone()));
+        }
+        if here.extension().is_some() || reference.contains(['/', '\\']) {
+            return Ok(Self::File(beside.unwrap_or(here)));
+        }
+        let hint = suggestion(reference, names);
+        let message = format!("\"{reference}\" is neither a built-in robot nor a file; {hint}");
+        Err(ScenarioError::new(ErrorKind::Scenario, message))
+    }
+
+    /// Returns the name or the path, for messages.
+    pub fn label(&self) -> String {
+        match self {
+            Self::Embedded(name) => name.clone(),
+            Self::File(path) => path.display().to_string(),
+        }
+    }
+
+    /// Returns the robot.
+    ///
+    /// # Errors
+    /// [`ReadError`] where the file can not be read, or no robot can be made of it.
+    pub fn read(&self, options: &UrdfOptions) -> Result<Robot, ReadError> {
+        match self {
+            Self::File(path) => Robot::from_urdf_file(path, options),
+            Self::Embedded(name) => {
+                let text = embedded::text(name).unwrap_or_default();
+                Robot::from_urdf_with(text, options)
+                    .map_err(|error| ReadError::Urdf { path: name.into(), error })
+            }
+        }
+    }
+
+    /// Returns the place of a finding in the robot's text.
+    pub fn place(&self, line: usize, column: usize) -> Place {
+        let text = match self {
+            Self::Embedded(name) => embedded::text(name).unwrap_or_default().to_owned(),
+            Self::File(path) => std::fs::read_to_string(path).unwrap_or_default(),
+        };
+        Place::of_line(Some(self.label()), &text, line, column)
+    }
+
+    /// Returns the refusal that a failed [`RobotSource::read`] means, with its place in the URDF.
+    pub fn refusal(&self, error: &ReadError) -> ScenarioError {
+        let ReadError::Urdf { error, .. } = error else {
+            return ScenarioError::new(ErrorKind::File, error.to_string());
+        };
+        let errors =
+            error.diagnostics().iter().filter(|d| d.severity == crate::robot::Severity::Error).count();
+        let more =
+            if errors > 1 { format!(" ({errors} errors; `robot check` lists them)") } else { String::new() };
+        let Some(first) = error.first() else {
+            return ScenarioError::new(ErrorKind::Robot, error.to_string());
+        };
+        let place = self.place(first.line, first.column);
+        ScenarioError::new(ErrorKind::Robot, format!("{}{more}", first.message)).or_placed(Some(place))
+    }
+}
