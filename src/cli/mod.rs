@@ -1,8 +1,10 @@
 //! The command line: arguments in, a document out, an exit code for scripts.
 
 mod arguments;
+#[allow(dead_code)]
 mod failure;
 mod formula_schema;
+#[allow(dead_code)]
 mod output;
 mod robot;
 mod schema;
