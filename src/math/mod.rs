@@ -1,1 +1,24 @@
-//! (room: math)
+//! Exact polynomials and their root tests, and the numbers they are made of.
+
+mod complex_roots;
+mod fixed;
+mod modular;
+mod polynomial;
+mod rational;
+mod real_roots;
+mod root_condition;
+mod routh;
+
+pub use complex_roots::{complex_roots, root_moduli};
+pub use polynomial::Polynomial;
+pub use rational::{
+    MAX_DIGITS, ParseRationalError, Rational, parse_rational, rational_from_f64, rational_to_f64, simplest_between,
+};
+pub use real_roots::{RealRoot, positive_roots, real_roots_between};
+pub use root_condition::{RootCondition, root_condition};
+pub use routh::{is_schur, is_schur_within};
+
+pub(crate) use complex_roots::{Complex, Real, polish, simple_roots, starting_points};
+pub(crate) use fixed::Fixed;
+pub(crate) use rational::{common_denominator, shortened};
+pub(crate) use routh::{half_plane_image, last_hurwitz_determinant};

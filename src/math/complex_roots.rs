@@ -1,0 +1,278 @@
+//! Complex roots as figures: all at once by the Ehrlich-Aberth iteration, in doubles or in 192 binary places.
+//!
+//! Nothing is decided with these; they are for showing moduli, spectral radii and their minimum.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use num_bigint::BigInt;
+use num_traits::Zero;
+
+use super::fixed::Fixed;
+use super::polynomial::Polynomial;
+use super::rational::Rational;
+
+/// The arithmetic that the iteration needs.
+pub(crate) trait Real:
+    Clone
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The nearest representable number.
+    fn from_f64(value: f64) -> Self;
+    /// The nearest double.
+    fn to_f64(&self) -> f64;
+    /// Whether this is exactly zero.
+    fn is_zero(&self) -> bool;
+    /// The relative size of a correction that is no longer worth making.
+    fn resolution() -> f64;
+}
+
+impl Real for f64 {
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+    fn to_f64(&self) -> f64 {
+        *self
+    }
+    fn is_zero(&self) -> bool {
+        *self == 0.0
+    }
+    fn resolution() -> f64 {
+        2.0 * f64::EPSILON
+    }
+}
+
+/// A complex number re + i im.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Complex<T> {
+    pub(crate) re: T,
+    pub(crate) im: T,
+}
+
+impl<T: Real> Complex<T> {
+    pub(crate) fn new(re: T, im: T) -> Self {
+        Self { re, im }
+    }
+
+    fn zero() -> Self {
+        Self::new(T::from_f64(0.0), T::from_f64(0.0))
+    }
+
+    /// |z|^2, without a square root and so exact enough to compare by.
+    pub(crate) fn modulus_squared(&self) -> T {
+        self.re.clone() * self.re.clone() + self.im.clone() * self.im.clone()
+    }
+
+    pub(crate) fn modulus(&self) -> f64 {
+        self.re.to_f64().hypot(self.im.to_f64())
+    }
+
+    fn add(&self, other: &Self) -> Self {
+        Self::new(self.re.clone() + other.re.clone(), self.im.clone() + other.im.clone())
+    }
+
+    fn sub(&self, other: &Self) -> Self {
+        Self::new(self.re.clone() - other.re.clone(), self.im.clone() - other.im.clone())
+    }
+
+    fn mul(&self, other: &Self) -> Self {
+        let re = self.re.clone() * other.re.clone() - self.im.clone() * other.im.clone();
+        let im = self.re.clone() * other.im.clone() + self.im.clone() * other.re.clone();
+        Self::new(re, im)
+    }
+
+    /// The quotient, `None` when the divisor is zero to working precision.
+    fn checked_div(&self, divisor: &Self) -> Option<Self> {
+        let norm = divisor.modulus_squared();
+        if norm.is_zero() {
+            return None;
+        }
+        let conjugate = Self::new(divisor.re.clone(), -divisor.im.clone());
+        let product = self.mul(&conjugate);
+        Some(Self::new(product.re / norm.clone(), product.im / norm))
+    }
+}
+
+/// The value of a real polynomial and of its derivative, coefficients highest power first.
+fn value_and_slope<T: Real>(descending: &[T], z: &Complex<T>) -> (Complex<T>, Complex<T>) {
+    let (mut value, mut slope) = (Complex::zero(), Complex::zero());
+    for coefficient in descending {
+        slope = slope.mul(z).add(&value);
+        value = value.mul(z);
+        value.re = value.re + coefficient.clone();
+    }
+    (value, slope)
+}
+
+/// Improves approximations of all roots together until the corrections are below the resolution.
+///
+/// Returns whether they are; repeated roots converge slowly and to fewer digits.
+pub(crate) fn polish<T: Real>(descending: &[T], roots: &mut [Complex<T>], most_rounds: usize) -> bool {
+    for _ in 0..most_rounds {
+        let mut largest: f64 = 0.0;
+        for i in 0..roots.len() {
+            let step = aberth_step(descending, roots, i);
+            largest = largest.max(step.modulus() / roots[i].modulus().max(T::resolution().sqrt()));
+            roots[i] = roots[i].sub(&step);
+        }
+        if largest.is_nan() {
+            return false;
+        }
+        if largest <= T::resolution() {
+            return true;
+        }
+    }
+    false
+}
+
+/// p / (p' - p sum_j 1/(z_i - z_j)): Newton's step, with the other approximations divided out.
+fn aberth_step<T: Real>(descending: &[T], roots: &[Complex<T>], i: usize) -> Complex<T> {
+    let (value, slope) = value_and_slope(descending, &roots[i]);
+    if value.modulus_squared().is_zero() {
+        return Complex::zero();
+    }
+    let one = Complex::new(T::from_f64(1.0), T::from_f64(0.0));
+    let mut repulsion = Complex::zero();
+    for (_, other) in roots.iter().enumerate().filter(|(j, _)| *j != i) {
+        if let Some(term) = one.checked_div(&roots[i].sub(other)) {
+            repulsion = repulsion.add(&term);
+        }
+    }
+    // At a stationary point any small move will do; this one is the same on every run.
+    value.checked_div(&slope.sub(&value.mul(&repulsion))).unwrap_or_else(|| {
+        let nudge = 1e-3 * (1.0 + roots[i].modulus().min(1e100));
+        Complex::new(T::from_f64(nudge), T::from_f64(nudge / 3.0))
+    })
+}
+
+/// Starting points on circles whose radii are read off the convex hull of log |c_k| (Bini's choice), lowest power first.
+///
+/// Each is given by the binary logarithm of its radius and its angle. Neither end of the list may be zero.
+fn circles(ascending_logs: &[Option<f64>]) -> Vec<(f64, f64)> {
+    let mut hull: Vec<(usize, f64)> = Vec::new();
+    for (k, log) in ascending_logs.iter().enumerate().filter_map(|(k, log)| log.map(|log| (k, log))) {
+        while let [.., (k0, log0), (k1, log1)] = hull[..] {
+            let turns_up = (log1 - log0) * (k - k0) as f64 <= (log - log0) * (k1 - k0) as f64;
+            if !turns_up {
+                break;
+            }
+            hull.pop();
+        }
+        hull.push((k, log));
+    }
+    let mut points = Vec::new();
+    for edge in hull.windows(2) {
+        let ((k0, log0), (k1, log1)) = (edge[0], edge[1]);
+        let count = k1 - k0;
+        let log_radius = (log0 - log1) / count as f64;
+        for j in 0..count {
+            let turn = (j as f64 + 0.35) / count as f64 + 0.07 * k0 as f64;
+            points.push((log_radius, std::f64::consts::TAU * turn));
+        }
+    }
+    points
+}
+
+/// Starting points for doubles; the first and the last coefficient (highest power first) must not be zero.
+pub(crate) fn starting_points(descending: &[f64]) -> Vec<Complex<f64>> {
+    let logs: Vec<Option<f64>> =
+        descending.iter().rev().map(|c| (*c != 0.0).then(|| c.abs().log2())).collect();
+    let on_circle = |(log, angle): (f64, f64)| Complex::new(log.exp2() * angle.cos(), log.exp2() * angle.sin());
+    circles(&logs).into_iter().map(on_circle).collect()
+}
+
+/// Returns the complex roots of an exact polynomial, each as often as its multiplicity, largest modulus first.
+///
+/// The square-free decomposition is exact and comes first, so a repeated root is as accurate as a simple one:
+/// every root is good to the last digits of a double. The zero polynomial gives none.
+pub fn complex_roots(polynomial: &Polynomial) -> Vec<nalgebra::Complex<f64>> {
+    let (rest, zeros) = if polynomial.is_zero() { (Polynomial::default(), 0) } else { polynomial.without_zero_roots() };
+    let mut roots = vec![nalgebra::Complex::new(0.0, 0.0); zeros];
+    for (factor, multiplicity) in rest.square_free_decomposition() {
+        for root in simple_roots(&factor) {
+            let root = nalgebra::Complex::new(root.re.to_f64(), root.im.to_f64());
+            roots.extend(std::iter::repeat_n(root, multiplicity));
+        }
+    }
+    roots.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.re.total_cmp(&a.re)).then(b.im.total_cmp(&a.im)));
+    roots
+}
+
+/// Returns the moduli of the roots, each as often as its multiplicity, largest first.
+pub fn root_moduli(polynomial: &Polynomial) -> Vec<f64> {
+    complex_roots(polynomial).iter().map(|root| root.re.hypot(root.im)).collect()
+}
+
+/// The roots of a square-free polynomial with a nonzero constant term, in 192 binary places.
+pub(crate) fn simple_roots(square_free: &Polynomial) -> Vec<Complex<Fixed>> {
+    const MOST_ROUNDS: usize = 400;
+    let log = |c: &BigInt| {
+        // The top 53 bits and their place: a logarithm for integers of any size.
+        let drop = c.bits().saturating_sub(53);
+        let top = Rational::from_integer(c.clone() >> drop);
+        (!c.is_zero()).then(|| super::rational_to_f64(&top).abs().log2() + drop as f64)
+    };
+    let logs: Vec<Option<f64>> = square_free.ascending().iter().map(log).collect();
+    let mut roots: Vec<Complex<Fixed>> = circles(&logs).into_iter().map(fixed_point).collect();
+    let leading = square_free.leading();
+    let descending: Vec<Fixed> = square_free
+        .ascending()
+        .iter()
+        .rev()
+        .map(|c| Fixed::from_rational(&Rational::new(c.clone(), leading.clone())))
+        .collect();
+    polish(&descending, &mut roots, MOST_ROUNDS);
+    roots
+}
+
+fn fixed_point((log, angle): (f64, f64)) -> Complex<Fixed> {
+    let (whole, part) = (log.floor(), log - log.floor());
+    let scale = Fixed::power_of_two(whole as i64) * Fixed::from_f64(part.exp2());
+    Complex::new(scale.clone() * Fixed::from_f64(angle.cos()), scale * Fixed::from_f64(angle.sin()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn repeated_roots_have_clean_moduli() {
+        // (z - 1)^3 (2 z + 1)^2 z
+        let (one, half) = (Polynomial::from_descending(&[1, -1]), Polynomial::from_descending(&[2, 1]));
+        let p = &(&(&one * &one) * &one) * &(&(&half * &half) * &Polynomial::power(1));
+        assert_eq!(root_moduli(&p), [1.0, 1.0, 1.0, 0.5, 0.5, 0.0]);
+    }
+
+    #[test]
+    fn close_roots_keep_their_digits() {
+        // z^2 - 2 + 2e-24: roots within 1e-24 of each other's mirror image; and 1/3, 1/3 + 1e-12.
+        let third = Polynomial::from_descending(&[3, -1]);
+        let near = Polynomial::from_ascending([BigInt::from(-1_000_000_000_003_i64), BigInt::from(3_000_000_000_000_i64)]);
+        let moduli = root_moduli(&(&third * &near));
+        assert!((moduli[1] - 1.0 / 3.0).abs() < 1e-16);
+        assert!((moduli[0] - moduli[1] - 1e-12).abs() < 1e-16);
+    }
+
+    #[test]
+    fn survives_coefficients_of_any_size() {
+        let huge = BigInt::from(10).pow(399);
+        let p = Polynomial::from_ascending([BigInt::from(-1), BigInt::from(3), huge.clone(), -huge, BigInt::from(7)]);
+        let moduli = root_moduli(&p);
+        assert_eq!(moduli.len(), 4);
+        assert!(moduli[0].is_infinite() || moduli[0] > 1e300, "{moduli:?}");
+        assert!((moduli[1] - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn cyclotomic_roots_are_on_the_circle() {
+        let mut coefficients = vec![0; 41];
+        (coefficients[0], coefficients[40]) = (1, -1);
+        for modulus in root_moduli(&Polynomial::from_descending(&coefficients)) {
+            assert!((modulus - 1.0).abs() < 1e-15);
+        }
+    }
+}
