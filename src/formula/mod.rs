@@ -1,1 +1,32 @@
-//! (room: formula)
+//! Multistep formulas as rows of exact fractions: read, checked, analysed.
+//!
+//! A row declares facts about itself and the code computes them; a row that contradicts its own numbers never
+//! becomes a [`Formula`]. Order, root condition and feedback range are decided exactly.
+
+mod analysis;
+mod check;
+mod draft;
+mod error;
+mod feedback_range;
+#[expect(clippy::module_inception, reason = "the file is named after the one type it holds")]
+mod formula;
+mod noise;
+mod order;
+mod radius;
+mod read;
+mod row;
+mod table;
+
+pub use analysis::Analysis;
+pub use check::CheckedRow;
+pub use error::{Contradiction, Defect, DefectKind, NotRunnable, Place, TableError, UnknownFormula};
+pub use feedback_range::FeedbackRange;
+pub use formula::Formula;
+pub use noise::NoiseGain;
+pub use order::order_defect;
+pub use radius::Optimum;
+pub use read::{Strictness, read_rows};
+pub use row::{Coefficients, Declared, MAX_STEPS, Row};
+pub use table::FormulaTable;
+
+pub use crate::math::RootCondition;

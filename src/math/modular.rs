@@ -5,7 +5,7 @@
 
 use num_bigint::BigInt;
 use num_integer::Integer;
-use num_traits::{One, Signed, ToPrimitive};
+use num_traits::{Signed, ToPrimitive};
 
 use super::polynomial::Polynomial;
 
@@ -159,6 +159,8 @@ fn symmetric(value: BigInt, modulus: &BigInt) -> BigInt {
 
 #[cfg(test)]
 mod tests {
+    use num_traits::One;
+
     use super::*;
 
     #[test]
@@ -176,6 +178,5 @@ mod tests {
         let a = &common * &Polynomial::from_descending(&[1, -1]);
         let b = &common * &Polynomial::from_ascending([huge, BigInt::from(5)]);
         assert_eq!(a.gcd(&b), common.normalised());
-        assert!(!common.is_zero());
     }
 }
