@@ -1,1 +1,17 @@
-//! (room: planner)
+//! Brings formula, robots, tasks and laws together: [`Planner`] steps N arms in synchrony, [`Plan`] is what came of it.
+
+mod arm;
+mod builder;
+mod diagnosis;
+mod error;
+mod field;
+mod monitor;
+mod plan;
+mod run;
+
+pub use arm::Arm;
+pub use builder::{Feedback, PlannerBuilder, Start};
+pub use error::PlannerError;
+pub use monitor::{LimitKind, Violation};
+pub use plan::{ArmPlan, Plan, PlanStatus};
+pub use run::{ArmState, Planner, Stop};

@@ -1,1 +1,13 @@
-//! (room: task)
+//! What a tip shall do: paths, the time laws they are run through with, and the error against them.
+
+mod curve;
+mod error;
+mod motion;
+mod path;
+mod time_law;
+
+pub use curve::{Astroid, Circle, Line, Lissajous, PlanarCurve, Rose, Tricuspid};
+pub use error::TaskKind;
+pub use motion::{Motion, Reference};
+pub use path::{Path, PathPoint, Planar, Plane, Turning};
+pub use time_law::{Linear, Quintic, Sin2, Sin2Sin2, TimeLaw};

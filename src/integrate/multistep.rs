@@ -1,0 +1,289 @@
+use super::ring::Ring;
+use super::runge_kutta::RungeKutta;
+use super::weights::Weights;
+use super::{Field, Parts, Scalar, Starter, Tableau};
+use crate::formula::Formula;
+use thiserror::Error;
+
+/// Why a stepper could not be made.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum IntegrateError {
+    /// The row has `beta_0` or `gamma_0` different from zero.
+    #[error(
+        "formula `{id}` is implicit (it uses the right-hand side at the new state), and implicit rows can be analysed but not run yet; choose an explicit row"
+    )]
+    Implicit {
+        /// The row.
+        id: String,
+    },
+    /// The row's errors grow without bound whatever the step.
+    #[error(
+        "formula `{id}` is not zero-stable: its root of largest modulus is {modulus:.6}, so rounding errors grow without bound; choose a zero-stable row"
+    )]
+    Unstable {
+        /// The row.
+        id: String,
+        /// The largest modulus of a root of rho.
+        modulus: f64,
+    },
+    /// The initial state, or a given one, does not fit the field.
+    #[error("{what} has {got} entries where the right-hand side has {expected}")]
+    Dimension {
+        /// Which vector.
+        what: String,
+        /// Its length.
+        got: usize,
+        /// The length it should have.
+        expected: usize,
+    },
+    /// Too few or too many given starting states.
+    #[error("formula `{id}` needs {expected} starting states besides the initial one, got {got}")]
+    StartingStates {
+        /// The row.
+        id: String,
+        /// How many were given.
+        got: usize,
+        /// How many it needs.
+        expected: usize,
+    },
+}
+
+/// Whether a stepper can go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// All is well.
+    Running,
+    /// The step from the current state gave an infinite or NaN component; the last good state is kept.
+    NonFinite,
+}
+
+/// How the next state comes about while the history is short.
+#[derive(Clone, Debug)]
+enum Start<T> {
+    Rows(Vec<Weights<T>>),
+    RungeKutta(RungeKutta<T>),
+    Given(Vec<Vec<T>>),
+}
+
+/// The stepper: a row of the table, its history, and the start that fills it.
+///
+/// All memory is allocated in [`new`](Self::new); a step allocates nothing. Times are `t_0 + n sigma`, never
+/// accumulated. See [`Ode`](super::Ode) for an example.
+#[derive(Clone, Debug)]
+pub struct Multistep<T> {
+    weights: Weights<T>,
+    start: Start<T>,
+    steps: usize,
+    x: Ring<T>,
+    f: Ring<T>,
+    g: Option<Ring<T>>,
+    next: Vec<T>,
+    t0: T,
+    sigma: T,
+    index: usize,
+    status: Status,
+}
+
+impl<T: Scalar> Multistep<T> {
+    /// A stepper for `formula` from the state `x0` at `t0` with sampling gap `sigma`.
+    ///
+    /// # Errors
+    /// An implicit or unstable row, an initial or given state of the wrong length, a wrong number of given states.
+    pub fn new(
+        formula: &Formula,
+        starter: &Starter<T>,
+        field: &impl Field<T>,
+        t0: T,
+        sigma: T,
+        x0: &[T],
+    ) -> Result<Self, IntegrateError> {
+        if !formula.is_zero_stable() {
+            let modulus = formula.root_moduli().into_iter().fold(0.0, f64::max);
+            return Err(IntegrateError::Unstable { id: formula.id().to_owned(), modulus });
+        }
+        Self::for_study(formula, starter, field, t0, sigma, x0)
+    }
+
+    /// The same without the zero-stability check, to watch an unstable row fail.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), except that unstable rows are let through.
+    pub fn for_study(
+        formula: &Formula,
+        starter: &Starter<T>,
+        field: &impl Field<T>,
+        t0: T,
+        sigma: T,
+        x0: &[T],
+    ) -> Result<Self, IntegrateError> {
+        if !formula.is_explicit() {
+            return Err(IntegrateError::Implicit { id: formula.id().to_owned() });
+        }
+        let dimension = field.dimension();
+        check_length("the initial state", x0, dimension)?;
+        let weights = Weights::of(formula, sigma);
+        let start = Start::new(formula, starter, dimension, field.parts(), sigma)?;
+        // While starting, low-order rows may look further back into f or g than the row itself does.
+        let steps = formula.steps();
+        let mut stepper = Self {
+            x: Ring::new(steps, dimension, T::zero()),
+            f: Ring::new(start.depth(|w| &w.first).max(weights.first.len()), dimension, T::zero()),
+            g: (field.parts() != Parts::One).then(|| {
+                Ring::new(start.depth(|w| &w.second).max(weights.second.len()), dimension, T::zero())
+            }),
+            next: vec![T::zero(); dimension],
+            weights,
+            start,
+            steps,
+            t0,
+            sigma,
+            index: 0,
+            status: Status::Running,
+        };
+        stepper.x.push().copy_from_slice(x0);
+        Ok(stepper)
+    }
+
+    /// The state `x_n`.
+    pub fn state(&self) -> &[T] {
+        self.x.get(0)
+    }
+
+    /// The index `n` of the state.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
+    /// The time `t_n = t_0 + n sigma` of the state.
+    pub fn time(&self) -> T {
+        self.t0 + T::from_index(self.index) * self.sigma
+    }
+
+    /// Whether the run can go on.
+    pub fn status(&self) -> Status {
+        self.status
+    }
+
+    /// Whether the recursion itself has taken over from the starter.
+    pub fn is_started(&self) -> bool {
+        self.index + 1 >= self.steps
+    }
+
+    /// The first part `f(t_n, x_n)` of the last [`evaluate`](Self::evaluate).
+    pub fn derivative(&self) -> &[T] {
+        self.f.get(0)
+    }
+
+    /// Evaluates the field at `(t_n, x_n)`. Call it once for each state, then [`advance`](Self::advance).
+    pub fn evaluate(&mut self, field: &mut impl Field<T>) {
+        let t = self.time();
+        let g = self.g.as_mut().map_or(&mut [] as &mut [T], Ring::push);
+        field.evaluate(t, self.x.get(0), self.f.push(), g);
+    }
+
+    /// Goes from `x_n` to `x_{n+1}`, using what [`evaluate`](Self::evaluate) found.
+    ///
+    /// After a non-finite step nothing moves any more: [`state`](Self::state) stays the last good one.
+    pub fn advance(&mut self, field: &mut impl Field<T>) -> Status {
+        if self.status != Status::Running {
+            return self.status;
+        }
+        if self.is_started() {
+            self.weights.combine(&self.x, &self.f, self.g.as_ref(), &mut self.next);
+        } else {
+            self.advance_start(field);
+        }
+        if self.next.iter().all(|entry| entry.is_finite()) {
+            self.x.push().copy_from_slice(&self.next);
+            self.index += 1;
+        } else {
+            self.status = Status::NonFinite;
+        }
+        self.status
+    }
+
+    /// One step: [`evaluate`](Self::evaluate), then [`advance`](Self::advance).
+    pub fn step(&mut self, field: &mut impl Field<T>) -> Status {
+        if self.status == Status::Running {
+            self.evaluate(field);
+            self.advance(field);
+        }
+        self.status
+    }
+
+    fn advance_start(&mut self, field: &mut impl Field<T>) {
+        let time = self.time();
+        match &mut self.start {
+            Start::Rows(rows) => {
+                let row = &rows[self.index.min(rows.len() - 1)];
+                row.combine(&self.x, &self.f, self.g.as_ref(), &mut self.next);
+            }
+            Start::RungeKutta(method) => {
+                let known = (self.x.get(0), self.f.get(0), self.g.as_ref().map(|g| g.get(0)));
+                method.step(field, time, self.sigma, known, &mut self.next);
+            }
+            Start::Given(states) => self.next.copy_from_slice(&states[self.index]),
+        }
+    }
+}
+
+impl<T: Scalar> Start<T> {
+    fn new(
+        formula: &Formula,
+        starter: &Starter<T>,
+        dimension: usize,
+        parts: Parts,
+        sigma: T,
+    ) -> Result<Self, IntegrateError> {
+        let gamma_sum = formula.gamma_sum();
+        let rows = |rows: &[Formula]| {
+            Self::Rows(rows.iter().map(|row| Weights::for_start(row, sigma, &gamma_sum)).collect())
+        };
+        Ok(match starter {
+            Starter::Paper => rows(&[Formula::euler()]),
+            Starter::Ramp(ladder) => {
+                let mut usable: Vec<Formula> = Vec::with_capacity(formula.steps());
+                for (k, row) in ladder.iter().take(formula.steps() - 1).enumerate() {
+                    if row.is_explicit() && row.steps() <= k + 1 {
+                        usable.push(row.clone());
+                    } else {
+                        usable.push(usable.last().cloned().unwrap_or_else(Formula::euler));
+                    }
+                }
+                if usable.is_empty() {
+                    usable.push(Formula::euler());
+                }
+                rows(&usable)
+            }
+            Starter::Rk4 => Self::RungeKutta(RungeKutta::new(Tableau::rk4(), dimension, parts)),
+            Starter::Rk8 => Self::RungeKutta(RungeKutta::new(Tableau::rk8(), dimension, parts)),
+            Starter::Given(states) => {
+                let expected = formula.steps() - 1;
+                if states.len() != expected {
+                    let id = formula.id().to_owned();
+                    return Err(IntegrateError::StartingStates { id, got: states.len(), expected });
+                }
+                for (k, state) in states.iter().enumerate() {
+                    check_length(&format!("starting state {}", k + 1), state, dimension)?;
+                }
+                Self::Given(states.clone())
+            }
+        })
+    }
+
+    /// How far back the starting rows look, in the part that `pick` names; at least the newest evaluation is kept.
+    fn depth(&self, pick: impl Fn(&Weights<T>) -> &Vec<T>) -> usize {
+        match self {
+            Self::Rows(rows) => rows.iter().map(|row| pick(row).len()).max().unwrap_or(1).max(1),
+            _ => 1,
+        }
+    }
+}
+
+fn check_length<T>(what: &str, vector: &[T], expected: usize) -> Result<(), IntegrateError> {
+    if vector.len() == expected {
+        return Ok(());
+    }
+    Err(IntegrateError::Dimension { what: what.to_owned(), got: vector.len(), expected })
+}

@@ -1,0 +1,60 @@
+use super::Scalar;
+use super::ring::Ring;
+use crate::formula::Formula;
+use crate::math::Rational;
+
+/// A row as the stepper uses it: what multiplies the known states and evaluations, newest first.
+///
+/// `x_{n+1} = sum_j state_j x_{n-j} + sum_j first_j f_{n-j} + sum_j second_j g_{n-j}`, trailing zeros cut off.
+#[derive(Clone, Debug)]
+pub(super) struct Weights<T> {
+    pub(super) state: Vec<T>,
+    pub(super) first: Vec<T>,
+    pub(super) second: Vec<T>,
+}
+
+impl<T: Scalar> Weights<T> {
+    /// The weights of an explicit row at gap `sigma`.
+    pub(super) fn of(formula: &Formula, sigma: T) -> Self {
+        Self::scaled(formula.alpha(), formula.beta(), formula.gamma(), sigma, T::one())
+    }
+
+    /// The same for a row that starts another one: its `gamma` is scaled to the other's `gamma_sum`, so that both
+    /// run with the same feedback step `h`.
+    pub(super) fn for_start(formula: &Formula, sigma: T, gamma_sum: &Rational) -> Self {
+        let scale = T::from_rational(&(gamma_sum / formula.gamma_sum()));
+        Self::scaled(formula.alpha(), formula.beta(), formula.gamma(), sigma, scale)
+    }
+
+    fn scaled(alpha: &[Rational], beta: &[Rational], gamma: &[Rational], sigma: T, feedback: T) -> Self {
+        let cut = |row: &[Rational], scale: T| {
+            let mut weights: Vec<T> = row[1..].iter().map(|r| T::from_rational(r) * scale).collect();
+            while weights.last().is_some_and(|w| *w == T::zero()) {
+                weights.pop();
+            }
+            weights
+        };
+        Self { state: cut(alpha, -T::one()), first: cut(beta, sigma), second: cut(gamma, sigma * feedback) }
+    }
+
+    /// Writes `x_{n+1}`. The small terms are added first: they lose least that way.
+    pub(super) fn combine(&self, x: &Ring<T>, f: &Ring<T>, g: Option<&Ring<T>>, next: &mut [T]) {
+        next.fill(T::zero());
+        if let Some(g) = g {
+            add(&self.second, g, next);
+        }
+        add(&self.first, f, next);
+        add(&self.state, x, next);
+    }
+}
+
+fn add<T: Scalar>(weights: &[T], ring: &Ring<T>, next: &mut [T]) {
+    for (age, &weight) in weights.iter().enumerate() {
+        if weight == T::zero() {
+            continue;
+        }
+        for (sum, &sample) in next.iter_mut().zip(ring.get(age)) {
+            *sum += weight * sample;
+        }
+    }
+}

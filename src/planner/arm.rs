@@ -1,0 +1,46 @@
+use crate::law::{Law, Pseudoinverse};
+use crate::robot::Chain;
+use crate::task::{Motion, TaskKind};
+
+/// One arm of a plan: a chain, where it stands, and what its tip shall do by which law.
+pub struct Arm {
+    pub(super) name: String,
+    pub(super) chain: Chain,
+    pub(super) q0: Vec<f64>,
+    pub(super) task: TaskKind,
+    pub(super) motion: Motion,
+    pub(super) law: Box<dyn Law>,
+}
+
+impl std::fmt::Debug for Arm {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Arm").field("name", &self.name).field("q0", &self.q0).finish_non_exhaustive()
+    }
+}
+
+impl Arm {
+    /// An arm called `name` that starts at the joint positions `q0` [rad or m] and follows `motion` in the components
+    /// that `task` names, by the least-norm law.
+    ///
+    /// The motion is given in world axes: mount the chain first ([`Chain::mounted`]).
+    pub fn new(name: impl Into<String>, chain: Chain, q0: Vec<f64>, task: TaskKind, motion: Motion) -> Self {
+        Self { name: name.into(), chain, q0, task, motion, law: Box::new(Pseudoinverse::new()) }
+    }
+
+    /// The same arm with another law.
+    #[must_use]
+    pub fn with_law(mut self, law: impl Law + 'static) -> Self {
+        self.law = Box::new(law);
+        self
+    }
+
+    /// The arm's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The names of the joints it moves, in the order of their positions.
+    pub(super) fn joint_names(&self) -> Vec<String> {
+        self.chain.joints().iter().map(|joint| joint.name.clone()).collect()
+    }
+}

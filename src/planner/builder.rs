@@ -1,0 +1,347 @@
+use super::field::{ArmRuntime, SynchronousField};
+use super::{Arm, Planner, PlannerError};
+use crate::formula::{Formula, FormulaTable};
+use crate::integrate::{Multistep, Starter};
+use num_traits::ToPrimitive;
+use std::collections::HashSet;
+
+/// Samples may take this much memory [GiB] before a plan is refused.
+const MEMORY_CAP: f64 = 4.0;
+/// A path laid by its centre has to begin this near the tip [m or rad].
+const PATH_START_TOLERANCE: f64 = 1e-6;
+
+/// How strongly the task error is fed back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Feedback {
+    /// The step `h = sigma k sum(gamma)`, held fixed whatever `sigma`: errors fall as `sigma^(p+1)`.
+    Step(f64),
+    /// The continuous gain `k` [1/s]: `h` shrinks with `sigma`, and errors fall as `sigma^p` only.
+    Gain(f64),
+}
+
+/// How the run begins; see [`Starter`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Start {
+    /// The cheapest start of sufficient order: `rk4` up to order 4, `rk8` above.
+    #[default]
+    Sufficient,
+    /// Euler steps with the same `h`.
+    Paper,
+    /// Lower rows of the formula's family.
+    Ramp,
+    /// Runge-Kutta of order 4.
+    Rk4,
+    /// Runge-Kutta of order 8.
+    Rk8,
+    /// The joint positions `x_1 .. x_{s-1}` of all arms one after the other, oldest state first.
+    Given(Vec<Vec<f64>>),
+}
+
+impl Start {
+    /// The names a scenario may use.
+    pub const NAMES: [&'static str; 4] = ["paper", "ramp", "rk4", "rk8"];
+
+    /// The start of that name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        match name {
+            "paper" => Some(Self::Paper),
+            "ramp" => Some(Self::Ramp),
+            "rk4" => Some(Self::Rk4),
+            "rk8" => Some(Self::Rk8),
+            _ => None,
+        }
+    }
+
+    fn starter(&self, formula: &Formula) -> Starter<f64> {
+        match self {
+            Self::Sufficient => Starter::sufficient_for(formula.order()),
+            Self::Paper => Starter::Paper,
+            Self::Ramp => Starter::Ramp(FormulaTable::builtin().ramp(formula)),
+            Self::Rk4 => Starter::Rk4,
+            Self::Rk8 => Starter::Rk8,
+            Self::Given(states) => Starter::Given(states.clone()),
+        }
+    }
+}
+
+/// Collects what a plan is made of; [`build`](Self::build) checks it.
+#[derive(Debug, Default)]
+pub struct PlannerBuilder {
+    formula: Option<Formula>,
+    sigma: f64,
+    duration: f64,
+    feedback: Option<Feedback>,
+    start: Start,
+    arms: Vec<Arm>,
+    allow_unstable: bool,
+}
+
+impl PlannerBuilder {
+    /// The row that discretises time.
+    #[must_use]
+    pub fn formula(mut self, formula: &Formula) -> Self {
+        self.formula = Some(formula.clone());
+        self
+    }
+
+    /// The sampling gap [s].
+    #[must_use]
+    pub fn sigma(mut self, sigma: f64) -> Self {
+        self.sigma = sigma;
+        self
+    }
+
+    /// How long the motion takes [s].
+    #[must_use]
+    pub fn duration(mut self, duration: f64) -> Self {
+        self.duration = duration;
+        self
+    }
+
+    /// The feedback step `h`, held fixed whatever `sigma`.
+    #[must_use]
+    pub fn h(self, h: f64) -> Self {
+        self.feedback(Feedback::Step(h))
+    }
+
+    /// The feedback gain `k` [1/s].
+    #[must_use]
+    pub fn gain(self, gain: f64) -> Self {
+        self.feedback(Feedback::Gain(gain))
+    }
+
+    /// The feedback, as a step or as a gain. Without one the row's own best step `h_opt` is taken.
+    #[must_use]
+    pub fn feedback(mut self, feedback: Feedback) -> Self {
+        self.feedback = Some(feedback);
+        self
+    }
+
+    /// How the run begins.
+    #[must_use]
+    pub fn start(mut self, start: Start) -> Self {
+        self.start = start;
+        self
+    }
+
+    /// Adds an arm.
+    #[must_use]
+    pub fn arm(mut self, arm: Arm) -> Self {
+        self.arms.push(arm);
+        self
+    }
+
+    /// Adds arms.
+    #[must_use]
+    pub fn arms(mut self, arms: impl IntoIterator<Item = Arm>) -> Self {
+        self.arms.extend(arms);
+        self
+    }
+
+    /// Lets `h` lie outside the feedback range, to watch the loop diverge.
+    #[must_use]
+    pub fn allow_unstable(mut self, allow: bool) -> Self {
+        self.allow_unstable = allow;
+        self
+    }
+
+    /// Checks everything and allocates all that a step needs.
+    ///
+    /// # Errors
+    /// Anything that keeps the plan from being run as it was meant; see [`PlannerError`].
+    pub fn build(self) -> Result<Planner, PlannerError> {
+        let formula = self.formula.as_ref().ok_or(PlannerError::NoFormula)?;
+        self.check_arms()?;
+        let mut warnings = Vec::new();
+        let (sigma, steps) = self.grid(&mut warnings)?;
+        let gamma_sum = formula.gamma_sum().to_f64().unwrap_or(f64::NAN);
+        let h = self.feedback_step(formula, sigma, gamma_sum, &mut warnings)?;
+        let starter = self.start.starter(formula);
+        warn_about_start(formula, &starter, steps, &mut warnings);
+
+        let x0: Vec<f64> = self.arms.iter().flat_map(|arm| arm.q0.iter().copied()).collect();
+        let mut field = SynchronousField {
+            gain: h / (sigma * gamma_sum),
+            dimension: x0.len(),
+            arms: self.arms.into_iter().map(ArmRuntime::new).collect(),
+        };
+        check_criteria(formula, &field, sigma)?;
+        let mut stepper = Multistep::new(formula, &starter, &field, 0.0, sigma, &x0)?;
+        stepper.evaluate(&mut field);
+        check_path_starts(&field)?;
+        let description = super::run::Description {
+            formula: formula.id().to_owned(),
+            sigma,
+            h,
+            start: starter.name(),
+            steps,
+            warnings,
+        };
+        Ok(Planner::begin(description, stepper, field))
+    }
+
+    fn check_arms(&self) -> Result<(), PlannerError> {
+        if self.arms.is_empty() {
+            return Err(PlannerError::NoArms);
+        }
+        let mut names = HashSet::new();
+        for arm in &self.arms {
+            if !names.insert(arm.name.as_str()) {
+                return Err(PlannerError::DuplicateArm { name: arm.name.clone() });
+            }
+            check_initial(arm)?;
+        }
+        Ok(())
+    }
+
+    /// The gap and the number of steps: `sigma` as asked where it divides the duration, else `T / N` just below it.
+    fn grid(&self, warnings: &mut Vec<String>) -> Result<(f64, usize), PlannerError> {
+        let (sigma, duration) = (self.sigma, self.duration);
+        if !(duration > 0.0 && duration.is_finite()) {
+            return Err(PlannerError::Duration { value: duration });
+        }
+        if !(sigma > 0.0 && sigma <= duration) {
+            return Err(PlannerError::Sigma { value: sigma, duration });
+        }
+        let exact = duration / sigma;
+        let whole = exact.round();
+        let divides = (exact - whole).abs() <= 1e-9 * whole;
+        let steps = if divides { whole } else { exact.ceil() };
+        self.check_memory(steps)?;
+        if divides {
+            return Ok((sigma, steps as usize));
+        }
+        let adjusted = duration / steps;
+        warnings.push(format!(
+            "sigma = {sigma} s does not divide the duration {duration} s; it was adjusted to {duration}/{steps} = {adjusted} s"
+        ));
+        Ok((adjusted, steps as usize))
+    }
+
+    fn check_memory(&self, steps: f64) -> Result<(), PlannerError> {
+        let joints: usize = self.arms.iter().map(|arm| arm.q0.len()).sum();
+        let bytes_per_sample = 8.0 * (2 * joints + 6 * self.arms.len()) as f64;
+        let gibibytes = steps * bytes_per_sample / f64::from(1 << 30);
+        if gibibytes <= MEMORY_CAP {
+            return Ok(());
+        }
+        // A pose step of a 7-joint arm takes well under a microsecond on current machines.
+        let seconds = steps * 1e-6 * self.arms.len() as f64;
+        Err(PlannerError::TooManySteps { sigma: self.sigma, steps, gibibytes, seconds })
+    }
+
+    fn feedback_step(
+        &self,
+        formula: &Formula,
+        sigma: f64,
+        gamma_sum: f64,
+        warnings: &mut Vec<String>,
+    ) -> Result<f64, PlannerError> {
+        let h = match self.feedback {
+            Some(Feedback::Step(h)) => h,
+            Some(Feedback::Gain(gain)) => {
+                check_feedback("gain", gain)?;
+                sigma * gain * gamma_sum
+            }
+            None => formula.optimum().map_or(0.0, |optimum| optimum.h),
+        };
+        check_feedback("step h", h)?;
+        if h == 0.0 {
+            warnings.push("h = 0: without feedback the task error is never corrected and drifts".to_owned());
+            return Ok(h);
+        }
+        let range = formula.feedback_range();
+        if range.contains(h) {
+            return Ok(h);
+        }
+        let (id, range) = (formula.id().to_owned(), range.to_string());
+        if !self.allow_unstable {
+            return Err(PlannerError::StepSizeOutsideRange { h, formula: id, range });
+        }
+        warnings
+            .push(format!("h = {h} lies outside the feedback range {range} of formula `{id}`, as allowed"));
+        Ok(h)
+    }
+}
+
+fn check_feedback(what: &'static str, value: f64) -> Result<(), PlannerError> {
+    if value >= 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(PlannerError::Feedback { what, value })
+}
+
+fn check_initial(arm: &Arm) -> Result<(), PlannerError> {
+    let name = || arm.name.clone();
+    let joints = arm.chain.joints();
+    if joints.is_empty() {
+        let (base, tip) = (arm.chain.base().to_owned(), arm.chain.tip().to_owned());
+        return Err(PlannerError::NoJoints { arm: name(), base, tip });
+    }
+    if arm.q0.len() != joints.len() {
+        let joints = arm.joint_names().join(", ");
+        let (got, expected) = (arm.q0.len(), arm.chain.dof());
+        return Err(PlannerError::InitialLength { arm: name(), got, expected, joints });
+    }
+    for (joint, &value) in joints.iter().zip(&arm.q0) {
+        let joint_name = || joint.name.clone();
+        if !value.is_finite() {
+            return Err(PlannerError::InitialNonFinite { arm: name(), joint: joint_name(), value });
+        }
+        let (lower, upper) = (joint.limits.lower, joint.limits.upper);
+        if value < lower || value > upper {
+            let (arm, joint) = (name(), joint_name());
+            return Err(PlannerError::InitialOutsideLimits { arm, joint, value, lower, upper });
+        }
+    }
+    Ok(())
+}
+
+fn warn_about_start(formula: &Formula, starter: &Starter<f64>, steps: usize, warnings: &mut Vec<String>) {
+    let (id, p) = (formula.id(), formula.order());
+    if formula.steps() > 1
+        && let Some(order) = starter.order().filter(|&order| order < p)
+    {
+        warnings.push(format!(
+            "the start `{}` has order {order}, below the {p} of formula `{id}`: unless the path begins at rest to second order, its transient of O(sigma^{}) hides the formula's O(sigma^{}) in the maximum over the whole run",
+            starter.name(),
+            order + 1,
+            p + 1
+        ));
+    }
+    if steps < formula.steps() {
+        warnings.push(format!(
+            "the plan has {steps} steps, all of them part of the start: formula `{id}` takes over after {}",
+            formula.steps() - 1
+        ));
+    }
+}
+
+/// A criterion is integrated by `(alpha, beta)`: `sigma * rate * beta(1)` has to lie in that pair's own range.
+fn check_criteria(formula: &Formula, field: &SynchronousField, sigma: f64) -> Result<(), PlannerError> {
+    for runtime in &field.arms {
+        let Some(rate) = runtime.arm.law.criterion_rate() else { continue };
+        let pair = formula.without_split();
+        let beta_sum = pair.gamma_sum().to_f64().unwrap_or(f64::NAN);
+        if !pair.feedback_range().contains(sigma * rate * beta_sum) {
+            return Err(PlannerError::CriterionTooFast {
+                arm: runtime.arm.name.clone(),
+                rate,
+                sigma,
+                formula: formula.id().to_owned(),
+                limit: pair.feedback_range().value() / (sigma * beta_sum),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn check_path_starts(field: &SynchronousField) -> Result<(), PlannerError> {
+    for runtime in &field.arms {
+        let distance = runtime.error.norm();
+        if distance > PATH_START_TOLERANCE {
+            return Err(PlannerError::PathStart { arm: runtime.arm.name.clone(), distance });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,143 @@
+use crate::integrate::IntegrateError;
+use thiserror::Error;
+
+/// Why a planner could not be made. The text is a sentence that names the remedy.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum PlannerError {
+    /// No arm was added.
+    #[error("a plan needs at least one arm")]
+    NoArms,
+    /// Two arms have one name.
+    #[error("two arms are called `{name}`; names tell the columns of the output apart, so give each its own")]
+    DuplicateArm {
+        /// The name.
+        name: String,
+    },
+    /// The formula was not set.
+    #[error("no formula was chosen")]
+    NoFormula,
+    /// The duration is not a positive number.
+    #[error("the duration is {value} s; it must be a positive number")]
+    Duration {
+        /// What was given [s].
+        value: f64,
+    },
+    /// The sampling gap is not positive, not finite, or longer than the plan.
+    #[error("sigma is {value} s; it must be positive and at most the duration, {duration} s")]
+    Sigma {
+        /// What was given [s].
+        value: f64,
+        /// The duration [s].
+        duration: f64,
+    },
+    /// The plan would not fit into memory.
+    #[error(
+        "sigma = {sigma} s makes {steps:.3e} steps: about {gibibytes:.3e} GiB of samples and {seconds:.1e} s of work; choose a larger sigma or a shorter duration"
+    )]
+    TooManySteps {
+        /// The sampling gap [s].
+        sigma: f64,
+        /// Steps.
+        steps: f64,
+        /// Memory of the samples [GiB].
+        gibibytes: f64,
+        /// Estimated time [s].
+        seconds: f64,
+    },
+    /// Neither or an unusable feedback was given.
+    #[error("the feedback {what} is {value}; it must be a number, zero or positive")]
+    Feedback {
+        /// "step h" or "gain".
+        what: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// The feedback step lies outside the range in which the loop is stable.
+    #[error(
+        "h = {h} lies outside the feedback range {range} of formula `{formula}`: the closed loop would not be stable there; choose h inside the range, or allow unstable runs"
+    )]
+    StepSizeOutsideRange {
+        /// The feedback step.
+        h: f64,
+        /// The row.
+        formula: String,
+        /// The range as text, such as `(0, 2/3)`.
+        range: String,
+    },
+    /// A null-space criterion pulls faster than the row can follow.
+    #[error(
+        "arm `{arm}`: the null-space criterion has rate {rate} 1/s, and at sigma = {sigma} s formula `{formula}` follows rates below {limit:.6} 1/s only; lower the rate or sigma"
+    )]
+    CriterionTooFast {
+        /// The arm.
+        arm: String,
+        /// The criterion's rate [1/s].
+        rate: f64,
+        /// The sampling gap [s].
+        sigma: f64,
+        /// The row.
+        formula: String,
+        /// The limit [1/s].
+        limit: f64,
+    },
+    /// The initial joint positions do not fit the chain.
+    #[error("arm `{arm}`: q0 has {got} entries, expected {expected} ({joints})")]
+    InitialLength {
+        /// The arm.
+        arm: String,
+        /// Entries given.
+        got: usize,
+        /// Entries needed.
+        expected: usize,
+        /// The joints' names, in order.
+        joints: String,
+    },
+    /// An initial joint position is infinite or NaN.
+    #[error("arm `{arm}`: q0 of joint `{joint}` is {value}, which is not a finite number")]
+    InitialNonFinite {
+        /// The arm.
+        arm: String,
+        /// The joint.
+        joint: String,
+        /// What was given.
+        value: f64,
+    },
+    /// An initial joint position lies outside the joint's limits.
+    #[error("arm `{arm}`: q0 of joint `{joint}` is {value}, outside its limits [{lower}, {upper}]")]
+    InitialOutsideLimits {
+        /// The arm.
+        arm: String,
+        /// The joint.
+        joint: String,
+        /// What was given [rad or m].
+        value: f64,
+        /// Lower limit [rad or m].
+        lower: f64,
+        /// Upper limit [rad or m].
+        upper: f64,
+    },
+    /// The path does not begin where the tip is.
+    #[error(
+        "arm `{arm}`: its path begins {distance:.6} m (or rad) away from the tip at q0; leave out `center` to have the path begin at the tip, or change q0"
+    )]
+    PathStart {
+        /// The arm.
+        arm: String,
+        /// Norm of the task error at the start [m or rad].
+        distance: f64,
+    },
+    /// The chain has no movable joint.
+    #[error("arm `{arm}`: nothing moves between `{base}` and `{tip}`")]
+    NoJoints {
+        /// The arm.
+        arm: String,
+        /// The chain's base.
+        base: String,
+        /// The chain's tip.
+        tip: String,
+    },
+    /// The stepper refused the row or the start.
+    #[error(transparent)]
+    Integrate(#[from] IntegrateError),
+}

@@ -1,0 +1,123 @@
+use super::Violation;
+use nalgebra::Vector6;
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlanStatus {
+    /// It reached the end of its duration.
+    Completed,
+    /// The task error left every bound although the arm was well conditioned: the loop is not stable.
+    Diverged,
+    /// The arm lost a direction that the task needs.
+    Singular,
+    /// The path leaves what the arm can reach.
+    Unreachable,
+    /// A limit stopped it.
+    Limit,
+    /// A joint position became infinite or NaN.
+    NonFinite,
+}
+
+impl PlanStatus {
+    /// The word used in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Completed => "completed",
+            Self::Diverged => "diverged",
+            Self::Singular => "singular",
+            Self::Unreachable => "unreachable",
+            Self::Limit => "limit",
+            Self::NonFinite => "non_finite",
+        }
+    }
+}
+
+/// What one arm did.
+#[derive(Clone, Debug)]
+pub struct ArmPlan {
+    /// The arm's name.
+    pub name: String,
+    /// Its joints, in the order of the entries of a sample.
+    pub joints: Vec<String>,
+    /// Joint positions [rad or m], sample after sample.
+    pub positions: Vec<f64>,
+    /// Feedforward joint velocities `J^+ phi'` [rad/s or m/s], sample after sample.
+    pub velocities: Vec<f64>,
+    /// The task error of every sample (linear [m]; angular [rad]), zero in the components the task does not ask for.
+    pub errors: Vec<Vector6<f64>>,
+    /// The largest norm of the task error over the run.
+    pub max_error: f64,
+    /// The largest absolute component of the task error over the run.
+    pub max_error_component: f64,
+    /// The largest norm of the task error over the second half of the run, where the start is forgotten.
+    pub max_error_steady: f64,
+    /// The largest position error [m].
+    pub max_position_error: f64,
+    /// The largest orientation error [rad].
+    pub max_orientation_error: f64,
+    /// The smallest singular value of the task Jacobian met (a lower bound of it away from singularities), and when [s].
+    pub smallest_singular_value: (f64, f64),
+    /// On how many samples the law damped its answer.
+    pub damped_samples: usize,
+    /// Joint limits crossed, each where it was worst.
+    pub violations: Vec<Violation>,
+}
+
+impl ArmPlan {
+    /// The joint positions [rad or m] of sample `n`.
+    pub fn position(&self, n: usize) -> &[f64] {
+        let joints = self.joints.len();
+        &self.positions[n * joints..(n + 1) * joints]
+    }
+
+    /// The joint velocities [rad/s or m/s] of sample `n`.
+    pub fn velocity(&self, n: usize) -> &[f64] {
+        let joints = self.joints.len();
+        &self.velocities[n * joints..(n + 1) * joints]
+    }
+}
+
+/// The outcome of a run: joint trajectories of all arms on one time grid, whether it ended well, and what it met.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// How the run ended.
+    pub status: PlanStatus,
+    /// Why it ended early, as a sentence.
+    pub reason: Option<String>,
+    /// The formula's id.
+    pub formula: String,
+    /// The sampling gap used [s].
+    pub sigma: f64,
+    /// The feedback step used.
+    pub h: f64,
+    /// The starter's name.
+    pub start: &'static str,
+    /// Steps of the whole plan; a run that stopped has fewer.
+    pub steps: usize,
+    /// What each arm did.
+    pub arms: Vec<ArmPlan>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+impl Plan {
+    /// Number of samples recorded: `steps + 1` for a completed run.
+    pub fn samples(&self) -> usize {
+        self.arms.first().map_or(0, |arm| arm.errors.len())
+    }
+
+    /// The time of sample `n` [s].
+    pub fn time(&self, n: usize) -> f64 {
+        n as f64 * self.sigma
+    }
+
+    /// Whether the run reached its end.
+    pub fn is_completed(&self) -> bool {
+        self.status == PlanStatus::Completed
+    }
+
+    /// Whether every joint stayed within its limits.
+    pub fn is_within_limits(&self) -> bool {
+        self.arms.iter().all(|arm| arm.violations.is_empty())
+    }
+}

@@ -1,0 +1,343 @@
+use super::diagnosis;
+use super::field::{ArmRuntime, SynchronousField};
+use super::monitor::Monitor;
+use super::{ArmPlan, Plan, PlanStatus, PlannerBuilder};
+use crate::integrate::{Multistep, Status};
+use nalgebra::Vector6;
+
+/// The task error at which a run is stopped, as a fraction of the chain's reach.
+const LOST_FRACTION_OF_REACH: f64 = 0.1;
+/// The orientation error at which a run is stopped [rad].
+const LOST_ORIENTATION: f64 = 1.0;
+
+/// What a plan says of itself.
+#[derive(Clone, Debug)]
+pub(super) struct Description {
+    pub(super) formula: String,
+    pub(super) sigma: f64,
+    pub(super) h: f64,
+    pub(super) start: &'static str,
+    pub(super) steps: usize,
+    pub(super) warnings: Vec<String>,
+}
+
+/// Why and where a run stopped early.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stop {
+    /// The kind of stop.
+    pub status: PlanStatus,
+    /// The reason as a sentence.
+    pub reason: String,
+}
+
+/// One arm at the present sample.
+#[derive(Clone, Copy, Debug)]
+pub struct ArmState<'a> {
+    /// Joint positions [rad or m].
+    pub positions: &'a [f64],
+    /// Feedforward joint velocities [rad/s or m/s].
+    pub velocities: &'a [f64],
+    /// Task error (linear [m]; angular [rad]).
+    pub error: &'a Vector6<f64>,
+    /// Whether the law damped its answer here.
+    pub damped: bool,
+}
+
+/// A formula, arms, tasks and laws, ready to run: as a whole with [`run`](Self::run), or sample by sample in a control
+/// loop with [`step`](Self::step), which allocates nothing.
+///
+/// ```
+/// use kinstep::scheme;
+/// # use kinstep::{planner::Arm, robot::embedded, task::{Motion, Planar, Circle, Sin2, TaskKind}};
+/// # let chain = embedded::get("planar4")?.chain("base", "tip")?;
+/// # let q0 = vec![0.3, 0.4, 0.5, 0.6];
+/// # let start = chain.forward(&q0, &mut chain.scratch()).pose();
+/// # let motion = Motion::from_pose(Planar::whole(Circle { radius: 0.3 }), Sin2, 2.0, &start);
+/// # let arm = Arm::new("arm", chain, q0, TaskKind::PositionXy, motion);
+/// let mut planner = scheme::dtsmp([arm], 0.01, 0.4).duration(2.0).build()?;
+/// while !planner.is_finished() {
+///     let command = planner.arm(0).positions; // to the robot
+///     # let _ = command;
+///     planner.step();
+/// }
+/// assert!(planner.stop().is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Planner {
+    description: Description,
+    stepper: Multistep<f64>,
+    field: SynchronousField,
+    monitors: Vec<Monitor>,
+    /// Whether each arm was near a singularity one sample ago.
+    was_singular: Vec<bool>,
+    stop: Option<Stop>,
+}
+
+impl std::fmt::Debug for Planner {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Planner").field("description", &self.description).finish_non_exhaustive()
+    }
+}
+
+impl Planner {
+    /// An empty builder.
+    pub fn builder() -> PlannerBuilder {
+        PlannerBuilder::default()
+    }
+
+    /// Takes a stepper whose first state has been evaluated.
+    pub(super) fn begin(description: Description, stepper: Multistep<f64>, field: SynchronousField) -> Self {
+        let monitors = field.arms.iter().map(|runtime| Monitor::new(runtime.arm.chain.dof())).collect();
+        let was_singular = vec![true; field.arms.len()];
+        let mut planner = Self { description, stepper, field, monitors, was_singular, stop: None };
+        planner.watch();
+        planner.check_start();
+        planner
+    }
+
+    /// The index of the present sample.
+    pub fn index(&self) -> usize {
+        self.stepper.index()
+    }
+
+    /// The time of the present sample [s].
+    pub fn time(&self) -> f64 {
+        self.stepper.time()
+    }
+
+    /// Steps of the whole plan.
+    pub fn steps(&self) -> usize {
+        self.description.steps
+    }
+
+    /// The sampling gap used [s].
+    pub fn sigma(&self) -> f64 {
+        self.description.sigma
+    }
+
+    /// The feedback step used.
+    pub fn h(&self) -> f64 {
+        self.description.h
+    }
+
+    /// What the user should know before running.
+    pub fn warnings(&self) -> &[String] {
+        &self.description.warnings
+    }
+
+    /// Whether the last sample was reached or the run has stopped.
+    pub fn is_finished(&self) -> bool {
+        self.stop.is_some() || self.index() >= self.steps()
+    }
+
+    /// Why the run stopped early, if it did.
+    pub fn stop(&self) -> Option<&Stop> {
+        self.stop.as_ref()
+    }
+
+    /// Arm `i` (in the order in which arms were added) at the present sample.
+    ///
+    /// # Panics
+    /// If there is no arm `i`.
+    pub fn arm(&self, i: usize) -> ArmState<'_> {
+        let from: usize = self.field.arms[..i].iter().map(|runtime| runtime.arm.chain.dof()).sum();
+        let range = from..from + self.field.arms[i].arm.chain.dof();
+        ArmState {
+            positions: &self.stepper.state()[range.clone()],
+            velocities: &self.stepper.derivative()[range],
+            error: &self.field.arms[i].error,
+            damped: self.field.arms[i].resolution.damped,
+        }
+    }
+
+    /// Goes to the next sample; does nothing once [finished](Self::is_finished).
+    pub fn step(&mut self) {
+        if self.is_finished() {
+            return;
+        }
+        if self.stepper.advance(&mut self.field) == Status::NonFinite {
+            let t = self.time();
+            let reason = format!("a joint position became infinite or NaN in the step after t = {t:.6} s");
+            self.stop = Some(Stop { status: PlanStatus::NonFinite, reason });
+            return;
+        }
+        self.stepper.evaluate(&mut self.field);
+        self.watch();
+        self.check_lost();
+    }
+
+    /// Runs to the end and returns the trajectories.
+    pub fn run(self) -> Plan {
+        self.run_with(|_, _| {})
+    }
+
+    /// Runs to the end, telling `progress` after every step how many of how many are done.
+    pub fn run_with(mut self, mut progress: impl FnMut(usize, usize)) -> Plan {
+        let mut arms: Vec<ArmPlan> = self.field.arms.iter().map(|r| empty_plan(r, self.steps())).collect();
+        loop {
+            let done = self.index();
+            self.record(&mut arms);
+            if self.is_finished() {
+                break;
+            }
+            self.step();
+            if self.index() == done {
+                break;
+            }
+            progress(self.index(), self.steps());
+        }
+        self.conclude(arms)
+    }
+
+    fn record(&self, arms: &mut [ArmPlan]) {
+        for (i, plan) in arms.iter_mut().enumerate() {
+            let state = self.arm(i);
+            plan.positions.extend_from_slice(state.positions);
+            plan.velocities.extend_from_slice(state.velocities);
+            plan.errors.push(*state.error);
+        }
+    }
+
+    fn conclude(self, mut arms: Vec<ArmPlan>) -> Plan {
+        let mut warnings = self.description.warnings;
+        for ((plan, monitor), runtime) in arms.iter_mut().zip(&self.monitors).zip(&self.field.arms) {
+            plan.max_error = monitor.max_error;
+            plan.max_error_component = monitor.max_error_component;
+            plan.max_error_steady = monitor.max_error_steady;
+            plan.max_position_error = monitor.max_position_error;
+            plan.max_orientation_error = monitor.max_orientation_error;
+            plan.smallest_singular_value = (monitor.smallest_singular_value, monitor.smallest_at);
+            plan.damped_samples = monitor.damped_samples;
+            plan.violations = monitor.violations(&runtime.arm.chain);
+            warnings.extend(damping_warning(plan, runtime.arm.law.threshold()));
+        }
+        let (status, reason) = match self.stop {
+            Some(stop) => (stop.status, Some(stop.reason)),
+            None => (PlanStatus::Completed, None),
+        };
+        let Description { formula, sigma, h, start, steps, .. } = self.description;
+        Plan { status, reason, formula, sigma, h, start, steps, arms, warnings }
+    }
+
+    /// Observes the present sample: errors, limits, conditioning.
+    fn watch(&mut self) {
+        let (t, sigma) = (self.stepper.time(), self.description.sigma);
+        let steady = 2 * self.stepper.index() >= self.description.steps;
+        let mut from = 0;
+        for (runtime, monitor) in self.field.arms.iter().zip(&mut self.monitors) {
+            let to = from + runtime.arm.chain.dof();
+            let (q, velocity) = (&self.stepper.state()[from..to], &self.stepper.derivative()[from..to]);
+            monitor.observe_error(&runtime.error, steady);
+            monitor.observe_joints(&runtime.arm.chain, t, sigma, q, velocity);
+            monitor.observe_conditioning(&runtime.resolution, t);
+            from = to;
+        }
+    }
+
+    /// A run does not begin in a singular configuration: nothing could be promised about its first steps.
+    fn check_start(&mut self) {
+        for (was, runtime) in self.was_singular.iter_mut().zip(&self.field.arms) {
+            *was = is_singular(runtime);
+        }
+        if let Some(i) = self.was_singular.iter().position(|&singular| singular) {
+            let runtime = &self.field.arms[i];
+            let reason = format!(
+                "arm `{}` starts in a singular configuration: the smallest singular value of its {}-row task Jacobian at q0 is {:.3e}, below the threshold {:.3e}; choose another q0 (a bent arm) or a task with fewer components",
+                runtime.arm.name,
+                runtime.arm.task.rows(),
+                runtime.resolution.smallest_singular_value,
+                runtime.arm.law.threshold()
+            );
+            self.stop = Some(Stop { status: PlanStatus::Singular, reason });
+        }
+    }
+
+    /// Stops the run when an arm has lost its path, and finds out why.
+    fn check_lost(&mut self) {
+        for i in 0..self.field.arms.len() {
+            let runtime = &self.field.arms[i];
+            let singular = is_singular(runtime);
+            if is_lost(runtime) {
+                self.stop = Some(if singular || self.was_singular[i] {
+                    self.singular_or_unreachable(i)
+                } else {
+                    diverged(runtime, self.time())
+                });
+                return;
+            }
+            self.was_singular[i] = singular;
+        }
+    }
+
+    fn singular_or_unreachable(&self, i: usize) -> Stop {
+        let (runtime, t) = (&self.field.arms[i], self.time());
+        let reference = runtime.arm.motion.at(t);
+        let distance = diagnosis::smallest_distance(runtime, self.arm(i).positions, &reference);
+        let (name, error, p) = (&runtime.arm.name, runtime.error.norm(), reference.position);
+        let place = format!("({:.4}, {:.4}, {:.4}) m", p.x, p.y, p.z);
+        if diagnosis::is_reached(distance) {
+            let reason = format!(
+                "arm `{name}` met a singularity and lost its path at t = {t:.6} s with a task error of {error:.3e}: the smallest singular value of its Jacobian is {:.3e}, below the threshold {:.3e}; the path's point {place} can be reached, from another q0 for instance",
+                runtime.resolution.smallest_singular_value,
+                runtime.arm.law.threshold()
+            );
+            return Stop { status: PlanStatus::Singular, reason };
+        }
+        let reason = format!(
+            "arm `{name}` can not reach its path at t = {t:.6} s: the nearest it gets to {place} is a task error of {distance:.3e} (the run stopped at {error:.3e}); move the path nearer or make it smaller"
+        );
+        Stop { status: PlanStatus::Unreachable, reason }
+    }
+}
+
+fn is_singular(runtime: &ArmRuntime) -> bool {
+    runtime.resolution.smallest_singular_value < runtime.arm.law.threshold()
+}
+
+fn is_lost(runtime: &ArmRuntime) -> bool {
+    let position = runtime.error.fixed_rows::<3>(0).norm();
+    let orientation = runtime.error.fixed_rows::<3>(3).norm();
+    let reach = runtime.arm.chain.reach();
+    let bound = LOST_FRACTION_OF_REACH * if reach.is_finite() { reach } else { 1.0 };
+    // Negated so that NaN counts as lost.
+    !(position <= bound && orientation <= LOST_ORIENTATION)
+}
+
+fn diverged(runtime: &ArmRuntime, t: f64) -> Stop {
+    let reason = format!(
+        "arm `{}` diverged: at t = {t:.6} s its task error is {:.3e} although it is far from singular, so the closed loop is not stable at this h; choose h inside the formula's feedback range, or a smaller sigma",
+        runtime.arm.name,
+        runtime.error.norm()
+    );
+    Stop { status: PlanStatus::Diverged, reason }
+}
+
+fn damping_warning(plan: &ArmPlan, threshold: f64) -> Option<String> {
+    let (smallest, at) = plan.smallest_singular_value;
+    (plan.damped_samples > 0).then(|| {
+        format!(
+            "arm `{}` came near a singularity: damped least squares acted on {} samples; the smallest singular value was {smallest:.3e} at t = {at:.6} s (threshold {threshold:.3e})",
+            plan.name, plan.damped_samples
+        )
+    })
+}
+
+fn empty_plan(runtime: &ArmRuntime, steps: usize) -> ArmPlan {
+    let joints = runtime.arm.joint_names();
+    let entries = (steps + 1) * joints.len();
+    ArmPlan {
+        name: runtime.arm.name.clone(),
+        joints,
+        positions: Vec::with_capacity(entries),
+        velocities: Vec::with_capacity(entries),
+        errors: Vec::with_capacity(steps + 1),
+        max_error: 0.0,
+        max_error_component: 0.0,
+        max_error_steady: 0.0,
+        max_position_error: 0.0,
+        max_orientation_error: 0.0,
+        smallest_singular_value: (f64::INFINITY, 0.0),
+        damped_samples: 0,
+        violations: Vec::new(),
+    }
+}

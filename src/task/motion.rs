@@ -1,0 +1,107 @@
+use super::{Path, TimeLaw};
+use nalgebra::{IsometryMatrix3, Rotation3, Vector3, Vector6};
+
+/// Where a tip shall be at an instant, and how it shall move there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// Position in the world [m].
+    pub position: Vector3<f64>,
+    /// Orientation in the world.
+    pub rotation: Rotation3<f64>,
+    /// Twist (linear [m/s]; angular [rad/s]) in world axes.
+    pub twist: Vector6<f64>,
+}
+
+/// A path run through in a given time, laid to where an arm stands.
+///
+/// `p(t) = origin + path(u(t / T))`, `R(t) = turn(u(t / T)) R_0`.
+pub struct Motion {
+    path: Box<dyn Path>,
+    time_law: Box<dyn TimeLaw>,
+    duration: f64,
+    origin: Vector3<f64>,
+    initial: Rotation3<f64>,
+}
+
+impl std::fmt::Debug for Motion {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Motion")
+            .field("duration", &self.duration)
+            .field("origin", &self.origin)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Motion {
+    /// The path shifted so that it begins at the pose `start` [m], run through in `duration` [s].
+    pub fn from_pose(
+        path: impl Path + 'static,
+        time_law: impl TimeLaw + 'static,
+        duration: f64,
+        start: &IsometryMatrix3<f64>,
+    ) -> Self {
+        let beginning = path.point(time_law.progress(0.0).0).position;
+        Self::centered(path, time_law, duration, start.translation.vector - beginning, start.rotation)
+    }
+
+    /// The path laid with its own origin at `center` [m], beginning with the orientation `initial`.
+    pub fn centered(
+        path: impl Path + 'static,
+        time_law: impl TimeLaw + 'static,
+        duration: f64,
+        center: Vector3<f64>,
+        initial: Rotation3<f64>,
+    ) -> Self {
+        Self { path: Box::new(path), time_law: Box::new(time_law), duration, origin: center, initial }
+    }
+
+    /// The reference at time `t` [s]; before the beginning and after the end the motion rests.
+    pub fn at(&self, t: f64) -> Reference {
+        let tau = t / self.duration;
+        let (u, mut rate) = self.time_law.progress(tau.clamp(0.0, 1.0));
+        rate = if (0.0..=1.0).contains(&tau) { rate / self.duration } else { 0.0 };
+        let point = self.path.point(u);
+        let (turn, spin) = self.path.turn(u);
+        let (linear, angular) = (point.tangent * rate, spin * rate);
+        Reference {
+            position: self.origin + point.position,
+            rotation: turn * self.initial,
+            twist: Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rotation_vector;
+    use crate::task::{Planar, Plane, Quintic, Tricuspid, Turning};
+    use proptest::prelude::*;
+
+    fn motion() -> Motion {
+        let path = Planar::new(Tricuspid { radius: 0.3 }, Plane::Yz, 0.4, 0.2, 5.0);
+        let path = Turning::new(path, Vector3::y_axis(), 1.3);
+        let start = IsometryMatrix3::new(Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.1, 0.2, 0.3));
+        Motion::from_pose(path, Quintic, 2.0, &start)
+    }
+
+    proptest! {
+        #[test]
+        fn the_twist_is_the_derivative_of_the_pose(t in 0.01..1.99_f64) {
+            let (motion, step) = (motion(), 1e-5);
+            let (before, now, after) = (motion.at(t - step), motion.at(t), motion.at(t + step));
+            let linear = (after.position - before.position) / (2.0 * step);
+            let angular = rotation_vector(&(after.rotation * before.rotation.inverse())) / (2.0 * step);
+            prop_assert!((linear - now.twist.fixed_rows::<3>(0)).norm() < 1e-8);
+            prop_assert!((angular - now.twist.fixed_rows::<3>(3)).norm() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn it_begins_at_the_pose_and_rests_after_the_end() {
+        let motion = motion();
+        assert!((motion.at(0.0).position - Vector3::new(1.0, 2.0, 3.0)).norm() < 1e-15);
+        assert_eq!(motion.at(2.5).twist, Vector6::zeros());
+        assert_eq!(motion.at(2.5).position, motion.at(2.0).position);
+    }
+}
