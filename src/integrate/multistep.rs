@@ -2,31 +2,16 @@ use super::ring::Ring;
 use super::runge_kutta::RungeKutta;
 use super::weights::Weights;
 use super::{Field, Parts, Scalar, Starter, Tableau};
-use crate::formula::Formula;
+use crate::formula::{Formula, NotRunnable};
 use thiserror::Error;
 
 /// Why a stepper could not be made.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum IntegrateError {
-    /// The row has `beta_0` or `gamma_0` different from zero.
-    #[error(
-        "formula `{id}` is implicit (it uses the right-hand side at the new state), and implicit rows can be analysed but not run yet; choose an explicit row"
-    )]
-    Implicit {
-        /// The row.
-        id: String,
-    },
-    /// The row's errors grow without bound whatever the step.
-    #[error(
-        "formula `{id}` is not zero-stable: its root of largest modulus is {modulus:.6}, so rounding errors grow without bound; choose a zero-stable row"
-    )]
-    Unstable {
-        /// The row.
-        id: String,
-        /// The largest modulus of a root of rho.
-        modulus: f64,
-    },
+    /// The row may not run: it is implicit, or not zero-stable.
+    #[error(transparent)]
+    NotRunnable(#[from] NotRunnable),
     /// The initial state, or a given one, does not fit the field.
     #[error("{what} has {got} entries where the right-hand side has {expected}")]
     Dimension {
@@ -98,10 +83,7 @@ impl<T: Scalar> Multistep<T> {
         sigma: T,
         x0: &[T],
     ) -> Result<Self, IntegrateError> {
-        if !formula.is_zero_stable() {
-            let modulus = formula.root_moduli().into_iter().fold(0.0, f64::max);
-            return Err(IntegrateError::Unstable { id: formula.id().to_owned(), modulus });
-        }
+        formula.runnable()?;
         Self::for_study(formula, starter, field, t0, sigma, x0)
     }
 
@@ -118,7 +100,7 @@ impl<T: Scalar> Multistep<T> {
         x0: &[T],
     ) -> Result<Self, IntegrateError> {
         if !formula.is_explicit() {
-            return Err(IntegrateError::Implicit { id: formula.id().to_owned() });
+            return Err(NotRunnable::Implicit { id: formula.id().to_owned() }.into());
         }
         let dimension = field.dimension();
         check_length("the initial state", x0, dimension)?;
@@ -237,24 +219,13 @@ impl<T: Scalar> Start<T> {
         sigma: T,
     ) -> Result<Self, IntegrateError> {
         let gamma_sum = formula.gamma_sum();
-        let rows = |rows: &[Formula]| {
-            Self::Rows(rows.iter().map(|row| Weights::for_start(row, sigma, &gamma_sum)).collect())
-        };
         Ok(match starter {
-            Starter::Paper => rows(&[Formula::euler()]),
+            Starter::Paper => Self::Rows(vec![Weights::euler(sigma, &gamma_sum)]),
             Starter::Ramp(ladder) => {
-                let mut usable: Vec<Formula> = Vec::with_capacity(formula.steps());
-                for (k, row) in ladder.iter().take(formula.steps() - 1).enumerate() {
-                    if row.is_explicit() && row.steps() <= k + 1 {
-                        usable.push(row.clone());
-                    } else {
-                        usable.push(usable.last().cloned().unwrap_or_else(Formula::euler));
-                    }
-                }
-                if usable.is_empty() {
-                    usable.push(Formula::euler());
-                }
-                rows(&usable)
+                let fits = |(k, row): &(usize, &Formula)| row.is_explicit() && row.steps() <= k + 1;
+                let usable = ladder.iter().take(formula.steps() - 1).enumerate().take_while(fits);
+                let rows = usable.map(|(_, row)| Weights::for_start(row, sigma, &gamma_sum));
+                Self::Rows(std::iter::once(Weights::euler(sigma, &gamma_sum)).chain(rows.skip(1)).collect())
             }
             Starter::Rk4 => Self::RungeKutta(RungeKutta::new(Tableau::rk4(), dimension, parts)),
             Starter::Rk8 => Self::RungeKutta(RungeKutta::new(Tableau::rk8(), dimension, parts)),

@@ -8,8 +8,9 @@ pub enum Starter<T> {
     /// Euler steps with the row's own feedback step `h`, as in eq. (9) of Wang and Guo (IEEE Access 8, 2020).
     /// Each leaves a residual of `sigma^2 / 2` times the second derivative.
     Paper,
-    /// Rows of fewer steps, entry `k` being used once `k + 1` states are known (the last entry from there on).
-    /// The first step is Euler's, so it leaves what [`Starter::Paper`] leaves.
+    /// Explicit rows of at most 1, 2, 3, ... steps: entry `k` runs once `k + 1` states are known, the last one from
+    /// there on. The first step is Euler's, so it leaves what [`Starter::Paper`] leaves. See
+    /// [`FormulaTable::ramp`](crate::formula::FormulaTable::ramp).
     Ramp(Vec<Formula>),
     /// One classical Runge-Kutta step of order 4 per `sigma`.
     Rk4,

@@ -26,6 +26,11 @@ impl<T: Scalar> Weights<T> {
         Self::scaled(formula.alpha(), formula.beta(), formula.gamma(), sigma, scale)
     }
 
+    /// Euler's step with the feedback step of a row whose `gamma` sums to `gamma_sum`.
+    pub(super) fn euler(sigma: T, gamma_sum: &Rational) -> Self {
+        Self { state: vec![T::one()], first: vec![sigma], second: vec![sigma * T::from_rational(gamma_sum)] }
+    }
+
     fn scaled(alpha: &[Rational], beta: &[Rational], gamma: &[Rational], sigma: T, feedback: T) -> Self {
         let cut = |row: &[Rational], scale: T| {
             let mut weights: Vec<T> = row[1..].iter().map(|r| T::from_rational(r) * scale).collect();

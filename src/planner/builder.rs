@@ -56,7 +56,10 @@ impl Start {
         match self {
             Self::Sufficient => Starter::sufficient_for(formula.order()),
             Self::Paper => Starter::Paper,
-            Self::Ramp => Starter::Ramp(FormulaTable::builtin().ramp(formula)),
+            Self::Ramp => {
+                let table = FormulaTable::builtin();
+                Starter::Ramp((1..formula.steps()).map_while(|known| table.ramp(formula, known).cloned()).collect())
+            }
             Self::Rk4 => Starter::Rk4,
             Self::Rk8 => Starter::Rk8,
             Self::Given(states) => Starter::Given(states.clone()),
