@@ -41,8 +41,8 @@ impl Analysis {
         let rho = Polynomial::from_rationals_descending(&weights.alpha);
         let order = order_of(&weights.alpha, &weights.beta);
         let gamma_sum: Rational = weights.gamma.iter().sum();
-        let closed_loop =
-            (order.is_some() && !gamma_sum.is_zero()).then(|| ClosedLoop::new(&weights.alpha, &weights.gamma));
+        let closed_loop = (order.is_some() && !gamma_sum.is_zero())
+            .then(|| ClosedLoop::new(&weights.alpha, &weights.gamma));
         Self {
             root_condition: root_condition(&rho),
             feedback_order: order_of(&weights.alpha, &weights.gamma).map(|order| order.order),

@@ -43,7 +43,10 @@ impl CheckedRow {
         line("error_constant", error_constant.as_ref().map(|constant| quoted(&constant.to_string())));
         line("zero_stable", Some(declared.zero_stable.unwrap_or(analysis.is_zero_stable()).to_string()));
         let source = row.source.as_deref().map(quoted);
-        line("source", Some(source.unwrap_or_else(|| "\"unpublished\"  # where the coefficients are from".to_owned())));
+        line(
+            "source",
+            Some(source.unwrap_or_else(|| "\"unpublished\"  # where the coefficients are from".to_owned())),
+        );
         line("attribution", row.attribution.as_deref().map(quoted));
         line("note", row.note.as_deref().map(quoted));
         text

@@ -68,7 +68,9 @@ pub enum DefectKind {
         found: String,
     },
     /// A number that TOML has already rounded.
-    #[error("\"{key}\": write \"{text}\" in quotes; a bare {text} in TOML has already been rounded to a binary number")]
+    #[error(
+        "\"{key}\": write \"{text}\" in quotes; a bare {text} in TOML has already been rounded to a binary number"
+    )]
     BareFloat {
         /// The key, with the index of the entry where it is a list.
         key: String,
@@ -108,7 +110,9 @@ pub enum DefectKind {
         found: usize,
     },
     /// Not even one step.
-    #[error("\"{key}\" has {found} coefficients; the shortest formula has two, for the new state and the one before")]
+    #[error(
+        "\"{key}\" has {found} coefficients; the shortest formula has two, for the new state and the one before"
+    )]
     TooFewCoefficients {
         /// The list.
         key: String,
@@ -165,7 +169,9 @@ pub enum DefectKind {
         first_line: usize,
     },
     /// A row with the id of a row in another table.
-    #[error("the id \"{id}\" is taken by the row \"{name}\" of the table that this one extends; give the new row another id")]
+    #[error(
+        "the id \"{id}\" is taken by the row \"{name}\" of the table that this one extends; give the new row another id"
+    )]
     CollidingId {
         /// The id.
         id: String,
@@ -209,10 +215,14 @@ pub enum Contradiction {
         weight: Rational,
     },
     /// beta(1) = 0.
-    #[error("the row is inconsistent: its weights of f sum to 0, so nothing is integrated (z = 1 is a repeated root)")]
+    #[error(
+        "the row is inconsistent: its weights of f sum to 0, so nothing is integrated (z = 1 is a repeated root)"
+    )]
     NothingIntegrated,
     /// gamma(1) = 0.
-    #[error("the weights of the feedback, gamma, sum to 0, so no gain gives a feedback step h; they must not cancel")]
+    #[error(
+        "the weights of the feedback, gamma, sum to 0, so no gain gives a feedback step h; they must not cancel"
+    )]
     NoFeedback,
     /// The order is another.
     #[error("the row declares order {declared}, but its coefficients give order {computed}")]
@@ -378,7 +388,9 @@ pub enum NotRunnable {
         modulus: f64,
     },
     /// It needs f at the new state.
-    #[error("the formula \"{id}\" is implicit: it needs the velocity at the new state, which is not solved for yet; choose an explicit one")]
+    #[error(
+        "the formula \"{id}\" is implicit: it needs the velocity at the new state, which is not solved for yet; choose an explicit one"
+    )]
     Implicit {
         /// The formula.
         id: String,

@@ -2,7 +2,7 @@
 
 use crate::math::{Rational, RootCondition};
 
-use super::analysis::Analysis;
+use super::analysis::{Analysis, Weights};
 use super::error::NotRunnable;
 use super::feedback_range::FeedbackRange;
 use super::noise::NoiseGain;
@@ -177,6 +177,14 @@ impl Formula {
     /// Returns the order of the pair (alpha, gamma), `None` where that pair alone is not consistent.
     pub fn feedback_order(&self) -> Option<usize> {
         self.analysis.feedback_order()
+    }
+
+    /// Returns the analysis of the pair (alpha, beta) alone, as if the feedback part were weighted by beta too.
+    ///
+    /// Its feedback range bounds what the feedforward part of a split formula can follow explicitly.
+    pub fn without_split(&self) -> Analysis {
+        let (alpha, beta) = (self.alpha().to_vec(), self.beta().to_vec());
+        Analysis::of(Weights { alpha, gamma: beta.clone(), beta })
     }
 
     /// Says whether the explicit stepper may run this formula on x' = f.

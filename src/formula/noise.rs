@@ -61,7 +61,11 @@ fn h2_norm(numerator: &[Rational], denominator: &[Rational]) -> f64 {
         let mirrored: Vec<Fixed> = a.iter().rev().cloned().collect();
         let reduce = |row: &[Fixed], factor: &Fixed| -> Vec<Fixed> {
             let kept = row.len() - 1;
-            row.iter().zip(&mirrored).take(kept).map(|(x, m)| x.clone() - factor.clone() * m.clone()).collect()
+            row.iter()
+                .zip(&mirrored)
+                .take(kept)
+                .map(|(x, m)| x.clone() - factor.clone() * m.clone())
+                .collect()
         };
         (b, a) = (reduce(&b, &beta), reduce(&a, &alpha));
     }

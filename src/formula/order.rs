@@ -40,9 +40,8 @@ pub(crate) fn order_of(alpha: &[Rational], weights: &[Rational]) -> Option<Order
     }
     // A row of s steps has 2 s + 2 coefficients, one of them a scale: no more than 2 s + 1 conditions can hold.
     let most = 2 * alpha.len();
-    let (first, defect) = (0..=most)
-        .map(|q| (q, order_defect(alpha, weights, q)))
-        .find(|(_, defect)| !defect.is_zero())?;
+    let (first, defect) =
+        (0..=most).map(|q| (q, order_defect(alpha, weights, q))).find(|(_, defect)| !defect.is_zero())?;
     let factorial: BigInt = (1..=first).map(BigInt::from).product();
     (first >= 2).then(|| Order { order: first - 1, per_step: defect / factorial })
 }

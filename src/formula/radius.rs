@@ -6,8 +6,8 @@
 use num_traits::{One, Signed};
 
 use crate::math::{
-    Complex, Fixed, Polynomial, Rational, Real, polish, rational_from_f64, rational_to_f64, root_moduli, simple_roots,
-    starting_points,
+    Complex, Fixed, Polynomial, Rational, Real, polish, rational_from_f64, rational_to_f64, root_moduli,
+    simple_roots, starting_points,
 };
 
 use super::feedback_range::{ClosedLoop, FeedbackRange};
@@ -29,8 +29,7 @@ pub(crate) fn spectral_radius(closed_loop: &ClosedLoop, h: f64) -> f64 {
         // The new state's own coefficient vanishes at this h: a root has gone to infinity.
         return f64::INFINITY;
     }
-    quick_radius(&polynomial)
-        .unwrap_or_else(|| root_moduli(&polynomial).first().copied().unwrap_or(0.0))
+    quick_radius(&polynomial).unwrap_or_else(|| root_moduli(&polynomial).first().copied().unwrap_or(0.0))
 }
 
 /// The spectral radius by doubles, `None` where they can not vouch for 1e-13.
@@ -55,7 +54,10 @@ fn error_bound(descending: &[f64], root: &Complex<f64>) -> f64 {
     let (mut value, mut slope, mut size) = ((0.0, 0.0), (0.0, 0.0), 0.0);
     let modulus = root.modulus();
     for c in descending {
-        slope = (slope.0 * root.re - slope.1 * root.im + value.0, slope.0 * root.im + slope.1 * root.re + value.1);
+        slope = (
+            slope.0 * root.re - slope.1 * root.im + value.0,
+            slope.0 * root.im + slope.1 * root.re + value.1,
+        );
         value = (value.0 * root.re - value.1 * root.im + c, value.0 * root.im + value.1 * root.re);
         size = size * modulus + c.abs();
     }
@@ -83,7 +85,8 @@ pub(crate) fn optimum(closed_loop: &ClosedLoop, range: &FeedbackRange) -> Option
 fn deadbeat(closed_loop: &ClosedLoop) -> Option<Rational> {
     let n = closed_loop.degree();
     let (rho, gamma) = (closed_loop.rho(), closed_loop.gamma());
-    let (constant, slope) = (0..n).map(|k| (rho.coefficient(k), gamma.coefficient(k))).find(|(_, g)| *g != 0.into())?;
+    let (constant, slope) =
+        (0..n).map(|k| (rho.coefficient(k), gamma.coefficient(k))).find(|(_, g)| *g != 0.into())?;
     let h = -Rational::new(constant, slope);
     let image = closed_loop.at(&h);
     (h.is_positive() && image.degree() == n && (0..n).all(|k| image.coefficient(k) == 0.into())).then_some(h)
@@ -108,10 +111,8 @@ fn search(closed_loop: &ClosedLoop, range: &FeedbackRange) -> Option<Optimum> {
     const SAMPLES: usize = 600;
     let walk = Walk { end: (!range.is_unbounded()).then(|| range.value()) };
     let mut tracker = Tracker::new(closed_loop);
-    let grid: Vec<(f64, f64)> = (1..SAMPLES)
-        .map(|i| i as f64 / SAMPLES as f64)
-        .map(|t| (t, tracker.radius(walk.h(t))))
-        .collect();
+    let grid: Vec<(f64, f64)> =
+        (1..SAMPLES).map(|i| i as f64 / SAMPLES as f64).map(|t| (t, tracker.radius(walk.h(t)))).collect();
     let lowest = grid.iter().map(|(_, r)| *r).fold(f64::INFINITY, f64::min);
     if range.is_unbounded() && tracker.radius(1e9) <= lowest {
         return None;
@@ -187,7 +188,8 @@ fn settle(closed_loop: &ClosedLoop, near: f64) -> Optimum {
     let exact = rational_from_f64(near).unwrap_or_else(Rational::one);
     let mut valley = Valley::new(closed_loop, &exact);
     let margin = &exact * rational_from_f64(2e-6).unwrap_or_else(Rational::one);
-    let (mut low, mut high) = (Fixed::from_rational(&(&exact - &margin)), Fixed::from_rational(&(exact + margin)));
+    let (mut low, mut high) =
+        (Fixed::from_rational(&(&exact - &margin)), Fixed::from_rational(&(exact + margin)));
     let golden = Fixed::from_f64((5_f64.sqrt() - 1.0) / 2.0);
     let inner = |from: &Fixed, to: &Fixed| from.clone() + (to.clone() - from.clone()) * golden.clone();
     let (mut left, mut right) = (inner(&high, &low), inner(&low, &high));

@@ -13,8 +13,19 @@ use super::row::{Coefficients, Declared, Row};
 
 /// The keys of a row.
 const KEYS: [&str; 13] = [
-    "id", "name", "family", "difference", "denominator", "alpha", "beta", "gamma", "order", "error_constant",
-    "zero_stable", "source", "attribution",
+    "id",
+    "name",
+    "family",
+    "difference",
+    "denominator",
+    "alpha",
+    "beta",
+    "gamma",
+    "order",
+    "error_constant",
+    "zero_stable",
+    "source",
+    "attribution",
 ];
 const NOTE: &str = "note";
 
@@ -88,7 +99,9 @@ impl Reader<'_> {
             }
             found_any = true;
             match value.get_ref() {
-                DeValue::Array(list) if list.iter().all(|entry| entry.get_ref().is_table()) => tables.extend(list.iter()),
+                DeValue::Array(list) if list.iter().all(|entry| entry.get_ref().is_table()) => {
+                    tables.extend(list.iter())
+                }
                 _ => self.wrong_type("formula", "a list of rows, each begun by a line [[formula]]", value),
             }
         }
@@ -145,7 +158,16 @@ impl Reader<'_> {
         let row = row.map_err(|kind| self.report(coefficient_place(table, &kind, start), kind)).ok()?;
         self.row = None;
         let place = Place::of(self.text, start);
-        (self.defects.len() == before).then_some(Row { name, family, declared, source, attribution, note, place, ..row })
+        (self.defects.len() == before).then_some(Row {
+            name,
+            family,
+            declared,
+            source,
+            attribution,
+            note,
+            place,
+            ..row
+        })
     }
 
     fn id(&mut self, table: &DeTable<'_>, start: usize) -> Option<String> {
@@ -171,7 +193,10 @@ impl Reader<'_> {
         let claims = [
             ("order", "a row declares its order, to be checked; a draft check computes it"),
             ("error_constant", "a row declares its error constant, to be checked; a draft check computes it"),
-            ("zero_stable", "a row declares whether it is zero-stable, to be checked; a draft check computes it"),
+            (
+                "zero_stable",
+                "a row declares whether it is zero-stable, to be checked; a draft check computes it",
+            ),
             ("source", "say where the coefficients are from, such as a key of the bibliography"),
         ];
         for (key, remedy) in claims {
@@ -221,10 +246,13 @@ impl Reader<'_> {
     /// Reads an integer or a number in quotes, exactly.
     fn number(&mut self, key: String, value: Value<'_, '_>) -> Option<Rational> {
         let parsed = match value.get_ref() {
-            DeValue::Integer(integer) if integer.radix() == 10 => parse_rational(&integer.as_str().replace('_', "")),
-            DeValue::Integer(integer) => {
-                Ok(Rational::from_integer(num_bigint::BigInt::parse_bytes(integer.as_str().as_bytes(), integer.radix())?))
+            DeValue::Integer(integer) if integer.radix() == 10 => {
+                parse_rational(&integer.as_str().replace('_', ""))
             }
+            DeValue::Integer(integer) => Ok(Rational::from_integer(num_bigint::BigInt::parse_bytes(
+                integer.as_str().as_bytes(),
+                integer.radix(),
+            )?)),
             DeValue::String(text) => parse_rational(text),
             DeValue::Float(float) => {
                 let text = float.as_str().to_owned();
@@ -280,7 +308,11 @@ impl Reader<'_> {
         let denominator = match table.get("denominator") {
             Some(value) => self.number("denominator".to_owned(), value),
             None => {
-                self.missing("denominator", "it is what all entries of \"difference\" are divided by, 1 for none", start);
+                self.missing(
+                    "denominator",
+                    "it is what all entries of \"difference\" are divided by, 1 for none",
+                    start,
+                );
                 None
             }
         };

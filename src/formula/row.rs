@@ -170,18 +170,27 @@ fn check_shape(coefficients: &Coefficients) -> Result<(), DefectKind> {
         }
         Coefficients::General { alpha, beta, gamma } => {
             let gamma = gamma.iter().map(|gamma| ("gamma", gamma.as_slice()));
-            ([("alpha", alpha.as_slice()), ("beta", beta.as_slice())].into_iter().chain(gamma).collect(), "alpha")
+            (
+                [("alpha", alpha.as_slice()), ("beta", beta.as_slice())].into_iter().chain(gamma).collect(),
+                "alpha",
+            )
         }
     };
     let (first_key, first) = lists[0];
     for (key, list) in &lists[1..] {
         if list.len() != first.len() {
             let lengths = (first.len(), list.len());
-            return Err(DefectKind::UnequalLengths { key: (*key).to_owned(), expected: lengths.0, found: lengths.1 });
+            return Err(DefectKind::UnequalLengths {
+                key: (*key).to_owned(),
+                expected: lengths.0,
+                found: lengths.1,
+            });
         }
     }
     match first.len() {
-        0 | 1 => return Err(DefectKind::TooFewCoefficients { key: first_key.to_owned(), found: first.len() }),
+        0 | 1 => {
+            return Err(DefectKind::TooFewCoefficients { key: first_key.to_owned(), found: first.len() });
+        }
         n if n > MAX_STEPS + 1 => return Err(DefectKind::TooManySteps { steps: n - 1 }),
         _ => {}
     }

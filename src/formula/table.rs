@@ -25,7 +25,8 @@ impl FormulaTable {
     /// Never in a build whose tests have passed: they read this table.
     pub fn builtin() -> &'static Self {
         static TABLE: LazyLock<FormulaTable> = LazyLock::new(|| {
-            FormulaTable::from_toml(BUILTIN).unwrap_or_else(|error| panic!("the built-in table is at fault: {error}"))
+            FormulaTable::from_toml(BUILTIN)
+                .unwrap_or_else(|error| panic!("the built-in table is at fault: {error}"))
         });
         &TABLE
     }
@@ -63,7 +64,12 @@ impl FormulaTable {
         let mut likeness: Vec<(f64, &str)> =
             self.iter().map(|formula| (strsim::jaro_winkler(&asked, formula.id()), formula.id())).collect();
         likeness.sort_by(|a, b| b.0.total_cmp(&a.0));
-        likeness.iter().take_while(|(near, _)| *near >= 0.7).take(OFFERED).map(|(_, id)| (*id).to_owned()).collect()
+        likeness
+            .iter()
+            .take_while(|(near, _)| *near >= 0.7)
+            .take(OFFERED)
+            .map(|(_, id)| (*id).to_owned())
+            .collect()
     }
 
     /// Returns the formulas in the order of their files.
@@ -107,7 +113,8 @@ impl FormulaTable {
             .filter(|row| row.is_explicit() && row.is_strictly_zero_stable())
             .reduce(|best, row| {
                 let better = row.order() > best.order()
-                    || (row.order() == best.order() && row.error_constant().abs() < best.error_constant().abs());
+                    || (row.order() == best.order()
+                        && row.error_constant().abs() < best.error_constant().abs());
                 if better { row } else { best }
             })
     }

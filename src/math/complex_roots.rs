@@ -181,7 +181,8 @@ fn circles(ascending_logs: &[Option<f64>]) -> Vec<(f64, f64)> {
 pub(crate) fn starting_points(descending: &[f64]) -> Vec<Complex<f64>> {
     let logs: Vec<Option<f64>> =
         descending.iter().rev().map(|c| (*c != 0.0).then(|| c.abs().log2())).collect();
-    let on_circle = |(log, angle): (f64, f64)| Complex::new(log.exp2() * angle.cos(), log.exp2() * angle.sin());
+    let on_circle =
+        |(log, angle): (f64, f64)| Complex::new(log.exp2() * angle.cos(), log.exp2() * angle.sin());
     circles(&logs).into_iter().map(on_circle).collect()
 }
 
@@ -190,7 +191,8 @@ pub(crate) fn starting_points(descending: &[f64]) -> Vec<Complex<f64>> {
 /// The square-free decomposition is exact and comes first, so a repeated root is as accurate as a simple one:
 /// every root is good to the last digits of a double. The zero polynomial gives none.
 pub fn complex_roots(polynomial: &Polynomial) -> Vec<nalgebra::Complex<f64>> {
-    let (rest, zeros) = if polynomial.is_zero() { (Polynomial::default(), 0) } else { polynomial.without_zero_roots() };
+    let (rest, zeros) =
+        if polynomial.is_zero() { (Polynomial::default(), 0) } else { polynomial.without_zero_roots() };
     let mut roots = vec![nalgebra::Complex::new(0.0, 0.0); zeros];
     for (factor, multiplicity) in rest.square_free_decomposition() {
         for root in simple_roots(&factor) {
@@ -198,7 +200,9 @@ pub fn complex_roots(polynomial: &Polynomial) -> Vec<nalgebra::Complex<f64>> {
             roots.extend(std::iter::repeat_n(root, multiplicity));
         }
     }
-    roots.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.re.total_cmp(&a.re)).then(b.im.total_cmp(&a.im)));
+    roots.sort_by(|a, b| {
+        b.norm().total_cmp(&a.norm()).then(b.re.total_cmp(&a.re)).then(b.im.total_cmp(&a.im))
+    });
     roots
 }
 
@@ -251,7 +255,10 @@ mod tests {
     fn close_roots_keep_their_digits() {
         // z^2 - 2 + 2e-24: roots within 1e-24 of each other's mirror image; and 1/3, 1/3 + 1e-12.
         let third = Polynomial::from_descending(&[3, -1]);
-        let near = Polynomial::from_ascending([BigInt::from(-1_000_000_000_003_i64), BigInt::from(3_000_000_000_000_i64)]);
+        let near = Polynomial::from_ascending([
+            BigInt::from(-1_000_000_000_003_i64),
+            BigInt::from(3_000_000_000_000_i64),
+        ]);
         let moduli = root_moduli(&(&third * &near));
         assert!((moduli[1] - 1.0 / 3.0).abs() < 1e-16);
         assert!((moduli[0] - moduli[1] - 1e-12).abs() < 1e-16);
@@ -260,7 +267,13 @@ mod tests {
     #[test]
     fn survives_coefficients_of_any_size() {
         let huge = BigInt::from(10).pow(399);
-        let p = Polynomial::from_ascending([BigInt::from(-1), BigInt::from(3), huge.clone(), -huge, BigInt::from(7)]);
+        let p = Polynomial::from_ascending([
+            BigInt::from(-1),
+            BigInt::from(3),
+            huge.clone(),
+            -huge,
+            BigInt::from(7),
+        ]);
         let moduli = root_moduli(&p);
         assert_eq!(moduli.len(), 4);
         assert!(moduli[0].is_infinite() || moduli[0] > 1e300, "{moduli:?}");

@@ -1,22 +1,29 @@
-//! Exact polynomials and their root tests, and the numbers they are made of.
+//! Exact polynomials and their root tests, and the numbers they are made of; rotations and small solves of static size.
 
 mod complex_roots;
 mod fixed;
+mod gram;
 mod modular;
 mod polynomial;
 mod rational;
 mod real_roots;
 mod root_condition;
+mod rotation;
 mod routh;
+mod singular;
 
 pub use complex_roots::{complex_roots, root_moduli};
+pub use gram::GramCholesky;
 pub use polynomial::Polynomial;
 pub use rational::{
-    MAX_DIGITS, ParseRationalError, Rational, parse_rational, rational_from_f64, rational_to_f64, simplest_between,
+    MAX_DIGITS, ParseRationalError, Rational, parse_rational, rational_from_f64, rational_to_f64,
+    simplest_between,
 };
 pub use real_roots::{RealRoot, positive_roots, real_roots_between};
 pub use root_condition::{RootCondition, root_condition};
+pub use rotation::rotation_vector;
 pub use routh::{is_schur, is_schur_within};
+pub use singular::SingularValues;
 
 pub(crate) use complex_roots::{Complex, Real, polish, simple_roots, starting_points};
 pub(crate) use fixed::Fixed;

@@ -15,7 +15,9 @@ pub const MAX_DIGITS: usize = 400;
 #[non_exhaustive]
 pub enum ParseRationalError {
     /// The text is empty or only blanks.
-    #[error("a number is missing: the text is empty; write an integer, a fraction or a decimal such as \"3\", \"5/24\" or \"0.5\"")]
+    #[error(
+        "a number is missing: the text is empty; write an integer, a fraction or a decimal such as \"3\", \"5/24\" or \"0.5\""
+    )]
     Empty,
     /// The denominator of a fraction is zero.
     #[error("\"{text}\" divides by zero; the denominator of a fraction must not be 0")]
@@ -221,9 +223,10 @@ mod tests {
         assert_eq!(parse_rational("  "), Err(ParseRationalError::Empty));
         assert!(matches!(parse_rational("1/0"), Err(ParseRationalError::ZeroDenominator { .. })));
         assert!(matches!(parse_rational("1/0.0"), Err(ParseRationalError::ZeroDenominator { .. })));
-        for text in
-            ["½", "NaN", "inf", "-", ".", "1/2/3", "1 2", "0x10", "1_000", "1,5", "e3", "1e", "1e2.5", "--1", "1.2.3"]
-        {
+        for text in [
+            "½", "NaN", "inf", "-", ".", "1/2/3", "1 2", "0x10", "1_000", "1,5", "e3", "1e", "1e2.5", "--1",
+            "1.2.3",
+        ] {
             assert!(matches!(parse_rational(text), Err(ParseRationalError::Unreadable { .. })), "{text}");
         }
     }

@@ -103,7 +103,8 @@ impl RealRoot {
     /// Returns the double nearest to the middle of an interval refined well below its spacing.
     pub fn to_f64(&self) -> f64 {
         let mut narrow = self.clone();
-        let relative = narrow.high.abs().max(Rational::one()) / Rational::from_integer(BigInt::one() << 64_u32);
+        let relative =
+            narrow.high.abs().max(Rational::one()) / Rational::from_integer(BigInt::one() << 64_u32);
         narrow.refine(&relative);
         rational_to_f64(&((&narrow.low + &narrow.high) / Rational::from_integer(2.into())))
     }
@@ -240,14 +241,20 @@ mod tests {
         let p = &near(fraction(1, 3)) * &near(fraction(1, 3) + &tiny);
         let roots = positive_roots(&p);
         assert_eq!(roots.len(), 2);
-        assert_eq!(roots[0].compare(&(fraction(1, 3) + tiny / Rational::from_integer(2.into()))), Ordering::Less);
+        assert_eq!(
+            roots[0].compare(&(fraction(1, 3) + tiny / Rational::from_integer(2.into()))),
+            Ordering::Less
+        );
     }
 
     #[test]
     fn has_no_root_where_there_is_none() {
         assert!(positive_roots(&Polynomial::from_descending(&[1, 1, 1])).is_empty());
         assert!(positive_roots(&Polynomial::default()).is_empty());
-        assert!(real_roots_between(&Polynomial::from_descending(&[1, 0]), &fraction(0, 1), &fraction(1, 1)).is_empty());
+        assert!(
+            real_roots_between(&Polynomial::from_descending(&[1, 0]), &fraction(0, 1), &fraction(1, 1))
+                .is_empty()
+        );
     }
 
     proptest! {

@@ -103,7 +103,8 @@ mod tests {
 
     /// The Schur-Cohn recursion in rationals: an independent, slow decision.
     fn schur_cohn(polynomial: &Polynomial) -> bool {
-        let mut a: Vec<Rational> = polynomial.ascending().iter().cloned().map(Rational::from_integer).collect();
+        let mut a: Vec<Rational> =
+            polynomial.ascending().iter().cloned().map(Rational::from_integer).collect();
         while a.len() > 1 {
             let ratio = &a[0] / &a[a.len() - 1];
             if ratio.abs() >= Rational::from_integer(1.into()) {
@@ -120,8 +121,10 @@ mod tests {
         let Some((first, rest)) = m.split_first() else { return BigInt::from(1) };
         (0..first.len())
             .map(|c| {
-                let minor: Vec<Vec<BigInt>> =
-                    rest.iter().map(|r| r.iter().enumerate().filter(|(k, _)| *k != c).map(|(_, v)| v.clone()).collect()).collect();
+                let minor: Vec<Vec<BigInt>> = rest
+                    .iter()
+                    .map(|r| r.iter().enumerate().filter(|(k, _)| *k != c).map(|(_, v)| v.clone()).collect())
+                    .collect();
                 let term = &first[c] * determinant(&minor);
                 if c % 2 == 0 { term } else { -term }
             })
@@ -129,7 +132,8 @@ mod tests {
     }
 
     fn hurwitz_matrix(descending: &[BigInt], order: usize) -> Vec<Vec<BigInt>> {
-        let at = |k: isize| usize::try_from(k).ok().and_then(|k| descending.get(k)).cloned().unwrap_or_default();
+        let at =
+            |k: isize| usize::try_from(k).ok().and_then(|k| descending.get(k)).cloned().unwrap_or_default();
         (0..order).map(|i| (0..order).map(|j| at(2 * j as isize - i as isize + 1)).collect()).collect()
     }
 

@@ -58,7 +58,9 @@ impl Start {
             Self::Paper => Starter::Paper,
             Self::Ramp => {
                 let table = FormulaTable::builtin();
-                Starter::Ramp((1..formula.steps()).map_while(|known| table.ramp(formula, known).cloned()).collect())
+                Starter::Ramp(
+                    (1..formula.steps()).map_while(|known| table.ramp(formula, known).cloned()).collect(),
+                )
             }
             Self::Rk4 => Starter::Rk4,
             Self::Rk8 => Starter::Rk8,
@@ -326,13 +328,14 @@ fn check_criteria(formula: &Formula, field: &SynchronousField, sigma: f64) -> Re
         let Some(rate) = runtime.arm.law.criterion_rate() else { continue };
         let pair = formula.without_split();
         let beta_sum = pair.gamma_sum().to_f64().unwrap_or(f64::NAN);
-        if !pair.feedback_range().contains(sigma * rate * beta_sum) {
+        let range = pair.feedback_range();
+        if !range.is_some_and(|range| range.contains(sigma * rate * beta_sum)) {
             return Err(PlannerError::CriterionTooFast {
                 arm: runtime.arm.name.clone(),
                 rate,
                 sigma,
                 formula: formula.id().to_owned(),
-                limit: pair.feedback_range().value() / (sigma * beta_sum),
+                limit: range.map_or(0.0, |range| range.value() / (sigma * beta_sum)),
             });
         }
     }
