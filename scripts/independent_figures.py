@@ -2,10 +2,10 @@
 
 Usage:  python scripts/independent_figures.py [--out DIR] [NAME ...]
 
-They guard the numbers in robots/*.urdf: a wrong link length, axis or zero position can not pass. Sources:
+They guard the numbers in robots/*.urdf: a wrong link length, axis, zero position or joint range can not pass. Sources:
 
-- panda    the URDF in example-robot-data (by way of Pinocchio), and the modified Denavit-Hartenberg table of Franka's
-           control documentation (Craig's convention, flange at d = 0.107 m after joint 7);
+- panda    the URDF in example-robot-data (by way of Pinocchio), hand and both fingers, and the modified
+           Denavit-Hartenberg table of Franka's control documentation (Craig's convention, flange at d = 0.107 m);
 - baxter   the URDF in example-robot-data (by way of Pinocchio), both arms, and the right tip seen from the left;
 - iiwa14   KUKA's lengths 0.36, 0.42, 0.4, 0.126 m in a standard Denavit-Hartenberg table with twists of a quarter turn;
 - ur5e     Universal Robots' Denavit-Hartenberg table (base -> tool0), and the URDF in airo-models (base_link -> tool0);
@@ -104,6 +104,19 @@ def ur_table(d1, a2, a3, d4, d5, d6):
     return list(zip([0.0, a2, a3, 0.0, 0.0, 0.0], [d1, 0.0, 0.0, d4, d5, d6], twists, strict=True))
 
 
+def record(source, frames, chain, joints, limits, samples):
+    """A chain's record as it is written."""
+    return {
+        "source": source,
+        "frames": frames,
+        "base": chain[0],
+        "tip": chain[1],
+        "joints": joints,
+        "limits": [list(limit) for limit in limits],
+        "samples": samples,
+    }
+
+
 def table_chain(source, frames, base, tip, joints, limits, pose):
     """A chain's record from a function q -> 4x4 pose."""
     generator = oracle.sampler("independent", source, base, tip)
@@ -112,7 +125,7 @@ def table_chain(source, frames, base, tip, joints, limits, pose):
         q = [generator.uniform(lower, upper) for lower, upper in limits]
         matrix = pose(q)
         samples.append({"q": q, "position": matrix[:3, 3], "rotation": matrix[:3, :3]})
-    return {"source": source, "frames": frames, "base": base, "tip": tip, "joints": joints, "samples": samples}
+    return record(source, frames, (base, tip), joints, limits, samples)
 
 
 def urdf_chain(source, frames, path, chain, ours):
@@ -125,8 +138,8 @@ def urdf_chain(source, frames, path, chain, ours):
         q = oracle.sample(generator, drivers)
         position, rotation, _ = robot.pose_and_jacobian(*chain, drivers, q)
         samples.append({"q": q, "position": position, "rotation": rotation})
-    joints = [joint.name for joint in drivers]
-    return {"source": source, "frames": frames, "base": ours[0], "tip": ours[1], "joints": joints, "samples": samples}
+    limits = [(joint.lower, joint.upper) for joint in drivers]
+    return record(source, frames, ours, [joint.name for joint in drivers], limits, samples)
 
 
 def example_robot_data(relative):
@@ -160,7 +173,8 @@ def panda():
         PANDA_LIMITS,
         lambda q: modified_dh(PANDA_TABLE, 0.107, q),
     )
-    return [urdf_chain(source, "links of the same names", path, chain, chain), table]
+    fingers = [("panda_link0", "panda_leftfinger"), ("panda_link0", "panda_rightfinger")]
+    return [urdf_chain(source, "links of the same names", path, each, each) for each in (chain, *fingers)] + [table]
 
 
 def baxter():
