@@ -198,29 +198,34 @@ def iiwa14():
 
 
 def universal_robots(model, lengths):
-    table = ur_table(*lengths)
-    return table_chain(
-        f"Universal Robots, DH parameters for calculations of kinematics and dynamics, {model}",
-        "standard Denavit-Hartenberg table; first frame base (base_link turned by pi about z), last frame tool0",
-        "base",
-        "tool0",
-        [f"{joint}_joint" for joint in UR_JOINTS],
-        UR_LIMITS,
-        lambda q: standard_dh(table, q),
-    )
+    """The arm from the controller's base, and from base_link."""
+    source = f"Universal Robots, DH parameters for calculations of kinematics and dynamics, {model}"
+    joints = [f"{joint}_joint" for joint in UR_JOINTS]
+    table, half_turn = ur_table(*lengths), rotation_z_then_x(math.pi, 0.0, (0.0, 0.0, 0.0))
+
+    def from_base(q):
+        return standard_dh(table, q)
+
+    def from_base_link(q):
+        return half_turn @ standard_dh(table, q)
+
+    frames = "standard Denavit-Hartenberg table; first frame base, last frame tool0"
+    turned = f"{frames}; base_link is base turned by pi about z"
+    return [
+        table_chain(source, frames, "base", "tool0", joints, UR_LIMITS, from_base),
+        table_chain(source, turned, "base_link", "tool0", joints, UR_LIMITS, from_base_link),
+    ]
 
 
 def ur5e():
     source, path = airo_models("arms/ur5e/ur5e.urdf")
     chain = ("base_link", "tool0")
-    return [
-        universal_robots("UR5e", (0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996)),
-        urdf_chain(source, "links of the same names", path, chain, chain),
-    ]
+    table = universal_robots("UR5e", (0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996))
+    return [*table, urdf_chain(source, "links of the same names", path, chain, chain)]
 
 
 def ur10e():
-    return [universal_robots("UR10e", (0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655))]
+    return universal_robots("UR10e", (0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655))
 
 
 ROBOTS = {"baxter": baxter, "iiwa14": iiwa14, "panda": panda, "ur10e": ur10e, "ur5e": ur5e}
@@ -232,7 +237,8 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "tests" / "data")
     arguments = parser.parse_args()
     for name in sorted(arguments.names or ROBOTS):
-        head = {"robot": name, "note": "tip poses from models that this project did not write; see scripts/independent_figures.py"}
+        note = "tip poses from models that this project did not write; see scripts/independent_figures.py"
+        head = {"robot": name, "note": note}
         oracle.write_chains(arguments.out / f"independent_{name}.json", head, ROBOTS[name]())
 
 

@@ -52,13 +52,10 @@ impl Differences {
     }
 }
 
-fn folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
-}
-
 /// All figures in `tests/data` whose file name starts with `prefix`, in the order of their names.
 fn figures(prefix: &str) -> Vec<Figures> {
-    let entries = std::fs::read_dir(folder("tests/data")).expect("the folder of figures is part of the repository");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let entries = std::fs::read_dir(folder).expect("the folder of figures is part of the repository");
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("a readable entry").path()).collect();
     paths.retain(|path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(prefix)));
     paths.sort();
@@ -145,14 +142,6 @@ fn columns_are_the_figures_joints_in_path_order() {
 }
 
 #[test]
-fn robots_of_the_folder_read_without_a_complaint() {
-    for name in embedded::names() {
-        let robot = embedded::get(name).expect("an embedded robot");
-        assert!(robot.diagnostics().is_empty(), "{name}: {:?}", robot.diagnostics());
-    }
-}
-
-#[test]
 fn tips_are_where_independent_models_put_them() {
     let all = figures("independent_");
     assert!(all.len() >= 4);
@@ -176,8 +165,8 @@ fn position_limits_are_the_independent_models() {
     }
 }
 
-/// Copies of a URDF with one nonzero number in a joint's origin larger by 1e-5 (m in `xyz`, rad in `rpy`), each with
-/// the name of the joint and the number it changed.
+/// Copies of a URDF with one nonzero number in a joint's origin larger by 1e-5 (m in `xyz`, rad in `rpy`), each beside
+/// what it changed.
 fn perturbed(urdf: &str) -> Vec<(String, String)> {
     let document = roxmltree::Document::parse(urdf).expect("a file that reads is XML");
     let joints = document.descendants().filter(|node| node.has_tag_name("joint"));
@@ -200,9 +189,7 @@ fn perturbed(urdf: &str) -> Vec<(String, String)> {
 #[test]
 fn no_length_or_angle_off_by_a_hundred_thousandth_passes_for_the_independent_robot() {
     for figures in figures("independent_") {
-        let path = folder("robots").join(format!("{}.urdf", figures.robot));
-        let urdf = std::fs::read_to_string(&path).expect("the file that is embedded");
-        let copies = perturbed(&urdf);
+        let copies = perturbed(embedded::text(&figures.robot).expect("an embedded robot"));
         assert!(copies.len() >= 4, "{}: nothing to change", figures.robot);
         for (change, copy) in copies {
             let robot = Robot::from_urdf(&copy).expect("a changed number still reads");
