@@ -42,10 +42,13 @@ def urdf_files(paths):
 def draw(generator, robot):
     """A random (base, tip, drivers, q) with at least one movable joint on the path, or None."""
     links = sorted({joint.parent for joint in robot.joints} | {joint.child for joint in robot.joints})
-    for _ in range(50):
+    for _ in range(50 if len(links) > 1 else 0):
         base, tip = generator.sample(links, 2)
         path = oracle.path_between(robot.joints, base, tip)
-        drivers = oracle.chain_joints(robot.joints, base, tip) if path else []
+        try:
+            drivers = oracle.chain_joints(robot.joints, base, tip) if path else []
+        except oracle.UnknownDriver:
+            continue  # the figure would be a matter of opinion, and the program refuses the chain
         if drivers and all(robot.has(link) for link in (base, tip)):
             q = [generator.uniform(max(d.lower, -FAR), max(min(d.upper, FAR), max(d.lower, -FAR))) for d in drivers]
             return base, tip, drivers, q, all(joint.kind in KNOWN for joint in path)

@@ -149,8 +149,16 @@ class PinocchioRobot:
         self.pin = pinocchio
         self.joints = read_joints(path)
         self.by_name = {joint.name: joint for joint in self.joints}
+        self.driven = {joint.name: self._drive(joint) for joint in self.joints}
         self.model = pinocchio.buildModelFromUrdf(str(path))
         self.data = self.model.createData()
+
+    def _drive(self, joint):
+        """How a joint follows its driver; one whose driver is missing rests at zero by itself."""
+        try:
+            return resolve_mimic(joint, self.by_name)
+        except UnknownDriver:
+            return joint, 1.0, 0.0
 
     def has(self, link):
         """Whether Pinocchio knows the link."""
@@ -167,7 +175,7 @@ class PinocchioRobot:
             name, joint = self.model.names[index], self.model.joints[index]
             if name not in self.by_name:
                 continue
-            driver, multiplier, offset = resolve_mimic(self.by_name[name], self.by_name)
+            driver, multiplier, offset = self.driven[name]
             value = multiplier * positions.get(driver.name, 0.0) + offset
             if joint.nq == 1:
                 q[joint.idx_q] = value
@@ -202,7 +210,7 @@ class PinocchioRobot:
         for index in range(1, model.njoints):
             if model.names[index] not in self.by_name or model.joints[index].nv != 1:
                 continue
-            driver, multiplier, _ = resolve_mimic(self.by_name[model.names[index]], self.by_name)
+            driver, multiplier, _ = self.driven[model.names[index]]
             if driver.name in columns:
                 jacobian[:, columns[driver.name]] += multiplier * relative[:, model.joints[index].idx_v]
         return base_from_tip.translation.copy(), base_from_tip.rotation.copy(), jacobian
