@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use kinstep::robot::{Chain, Robot, embedded};
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::{Matrix3, Vector6};
 use serde::Deserialize;
 
 /// Figures of one robot.
@@ -92,19 +92,23 @@ fn difference(chain: &Chain, sample: &Sample) -> Differences {
     let mut columns = vec![Vector6::zeros(); chain.dof()];
     posed.geometric_jacobian(&mut columns);
     Differences {
-        position: (pose.translation.vector - Vector3::from(sample.position)).amax(),
-        rotation: (pose.rotation.matrix() - rotation).amax(),
+        position: largest(pose.translation.vector.iter().zip(&sample.position)),
+        rotation: largest(pose.rotation.matrix().iter().zip(&rotation)),
         jacobian: sample.jacobian.as_ref().map_or(0.0, |rows| jacobian_difference(&columns, rows)),
     }
+}
+
+/// The largest absolute difference; not a number counts as infinity.
+fn largest<'a>(pairs: impl Iterator<Item = (&'a f64, &'a f64)>) -> f64 {
+    let differences = pairs.map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, |worst, found| if found.is_nan() { f64::INFINITY } else { worst.max(found) })
 }
 
 fn jacobian_difference(columns: &[Vector6<f64>], rows: &[Vec<f64>]) -> f64 {
     assert_eq!(rows.len(), 6);
     assert!(rows.iter().all(|row| row.len() == columns.len()));
-    let row_difference = |(i, row): (usize, &Vec<f64>)| {
-        row.iter().zip(columns).fold(0.0_f64, |worst, (entry, column)| worst.max((column[i] - entry).abs()))
-    };
-    rows.iter().enumerate().map(row_difference).fold(0.0, f64::max)
+    let of_row = |(i, row): (usize, &Vec<f64>)| largest(columns.iter().map(|column| &column[i]).zip(row));
+    rows.iter().enumerate().map(of_row).fold(0.0, f64::max)
 }
 
 /// Whether a robot is the independent model's, to a micrometre and a microradian at every sample.
