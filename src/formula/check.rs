@@ -47,15 +47,15 @@ impl CheckedRow {
     /// # Errors
     /// The contradictions, as defects at the place of the row.
     pub fn into_formula(self) -> Result<Formula, Vec<Defect>> {
-        if self.contradictions.is_empty() {
-            if let Some(formula) = Formula::from_checked(self.row.clone(), self.analysis) {
-                return Ok(formula);
-            }
+        if self.contradictions.is_empty()
+            && let Some(formula) = Formula::from_checked(self.row.clone(), self.analysis)
+        {
+            return Ok(formula);
         }
         let defect = |contradiction| Defect {
             place: self.row.place,
             row: Some(self.row.id.clone()),
-            kind: DefectKind::Contradicted(contradiction),
+            kind: DefectKind::Contradicted(Box::new(contradiction)),
         };
         Err(self.contradictions.into_iter().map(defect).collect())
     }
@@ -65,21 +65,24 @@ fn contradictions(row: &Row, analysis: &Analysis) -> Vec<Contradiction> {
     let mut found = inconsistencies(analysis);
     let declared = &row.declared;
     found.extend(declared.order.and_then(|order| beyond_barrier(order, declared.zero_stable, analysis)));
-    if let (Some(declared), Some(computed)) = (declared.order, analysis.order()) {
-        if declared != computed {
-            found.push(Contradiction::Order { declared, computed });
-        }
+    if let Some((declared, computed)) = disagreement(declared.order, analysis.order()) {
+        found.push(Contradiction::Order { declared, computed });
     }
-    if let (Some(declared), Some(computed)) = (declared.error_constant.clone(), analysis.error_constant()) {
-        if declared != computed {
-            found.push(Contradiction::ErrorConstant { declared, computed });
-        }
+    if let Some((declared, computed)) =
+        disagreement(declared.error_constant.clone(), analysis.error_constant())
+    {
+        found.push(Contradiction::ErrorConstant { declared, computed });
     }
     if let Some(declared) = declared.zero_stable.filter(|declared| *declared != analysis.is_zero_stable()) {
         let moduli = analysis.root_moduli().iter().take(3).map(|modulus| format!("{modulus:.9}")).collect();
         found.push(Contradiction::ZeroStability { declared, computed: analysis.root_condition(), moduli });
     }
     found
+}
+
+/// Both values where both are known and differ.
+fn disagreement<T: PartialEq>(declared: Option<T>, computed: Option<T>) -> Option<(T, T)> {
+    declared.zip(computed).filter(|(declared, computed)| declared != computed)
 }
 
 fn inconsistencies(analysis: &Analysis) -> Vec<Contradiction> {

@@ -180,7 +180,7 @@ pub enum DefectKind {
     },
     /// The row can be read, but its numbers say otherwise.
     #[error("{0}")]
-    Contradicted(Contradiction),
+    Contradicted(Box<Contradiction>),
 }
 
 impl DefectKind {

@@ -155,8 +155,11 @@ impl Formula {
     }
 
     /// Returns the interval (0, h_max) of feedback steps with a stable closed loop, decided exactly.
+    ///
+    /// # Panics
+    /// Never: a formula is only made of a row that has a closed loop.
     pub fn feedback_range(&self) -> &FeedbackRange {
-        self.analysis.feedback_range().expect("a formula is only made of a row with a closed loop")
+        self.analysis.feedback_range().expect("a formula is only made of a row that has a closed loop")
     }
 
     /// Returns the feedback step with the least spectral radius in the range, `None` where there is none.

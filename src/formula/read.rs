@@ -68,7 +68,7 @@ fn repeated_ids(rows: &[Row]) -> Vec<Defect> {
         .filter_map(|row| {
             let first_line = *first_lines.entry(&row.id).or_insert(row.place.line);
             let kind = DefectKind::DuplicateId { id: row.id.clone(), first_line };
-            (first_line != row.place.line).then(|| Defect { place: row.place, row: None, kind })
+            (first_line != row.place.line).then_some(Defect { place: row.place, row: None, kind })
         })
         .collect()
 }
@@ -100,7 +100,7 @@ impl Reader<'_> {
             found_any = true;
             match value.get_ref() {
                 DeValue::Array(list) if list.iter().all(|entry| entry.get_ref().is_table()) => {
-                    tables.extend(list.iter())
+                    tables.extend(list.iter());
                 }
                 _ => self.wrong_type("formula", "a list of rows, each begun by a line [[formula]]", value),
             }
@@ -305,17 +305,15 @@ impl Reader<'_> {
             self.missing("difference", "\"denominator\" is what its entries are divided by", start);
         }
         let numerators = self.list(table, "difference");
-        let denominator = match table.get("denominator") {
-            Some(value) => self.number("denominator".to_owned(), value),
-            None => {
-                self.missing(
-                    "denominator",
-                    "it is what all entries of \"difference\" are divided by, 1 for none",
-                    start,
-                );
-                None
-            }
-        };
+        if !table.contains_key("denominator") {
+            self.missing(
+                "denominator",
+                "it is what all entries of \"difference\" are divided by, 1 for none",
+                start,
+            );
+        }
+        let denominator =
+            table.get("denominator").and_then(|value| self.number("denominator".to_owned(), value));
         Some(Coefficients::Difference { numerators: numerators?, denominator: denominator? })
     }
 

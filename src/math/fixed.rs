@@ -20,6 +20,11 @@ impl Fixed {
         Self((value.numer() << BINARY_PLACES) / value.denom())
     }
 
+    /// The integer behind the number with 192 more places.
+    fn scaled_up(self) -> BigInt {
+        self.0 << BINARY_PLACES
+    }
+
     /// Returns 2^exponent, 0 below the last place.
     pub(crate) fn power_of_two(exponent: i64) -> Self {
         let places = i64::from(BINARY_PLACES) + exponent;
@@ -52,7 +57,8 @@ impl Mul for Fixed {
 impl Div for Fixed {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        Self((self.0 << BINARY_PLACES).checked_div(&other.0).unwrap_or_default())
+        let scaled = self.scaled_up();
+        Self(scaled.checked_div(&other.0).unwrap_or_default())
     }
 }
 

@@ -39,7 +39,9 @@ pub(crate) fn gcd(a: &Polynomial, b: &Polynomial) -> Polynomial {
                 ((new, modulus * prime), settled)
             }
             // The first prime, or all earlier ones were unlucky.
-            _ => ((scaled.iter().map(|&c| symmetric(c.into(), &prime.into())).collect(), prime.into()), true),
+            _ => {
+                ((scaled.iter().map(|&c| symmetric(&c.into(), &prime.into())).collect(), prime.into()), true)
+            }
         };
         degree = image_degree;
         if settled {
@@ -146,13 +148,13 @@ fn join(old: &[BigInt], modulus: &BigInt, new: &[u64], prime: u64) -> Vec<BigInt
         .zip(new)
         .map(|(known, &image)| {
             let step = mul(sub(image, residue(known, prime), prime), inverse_modulus, prime);
-            symmetric(known + modulus * step, &product)
+            symmetric(&(known + modulus * step), &product)
         })
         .collect()
 }
 
 /// The representative of least magnitude.
-fn symmetric(value: BigInt, modulus: &BigInt) -> BigInt {
+fn symmetric(value: &BigInt, modulus: &BigInt) -> BigInt {
     let value = value.mod_floor(modulus);
     if (&value + &value).abs() > *modulus { value - modulus } else { value }
 }

@@ -22,6 +22,7 @@ use super::rational::{Rational, common_denominator};
 /// let p = Polynomial::from_descending(&[1, -3, 2]);
 /// assert_eq!(p.to_text("z"), "z^2 - 3 z + 2");
 /// ```
+#[must_use]
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Polynomial {
     /// Lowest power first, no zero at the end.
@@ -280,7 +281,7 @@ impl Polynomial {
                 1 => variable.to_owned(),
                 _ => format!("{variable}^{power}"),
             };
-            text.push_str(&format!("{sign}{factor}{symbol}"));
+            text.extend([sign, &factor, &symbol]);
         }
         if text.is_empty() { "0".to_owned() } else { text }
     }

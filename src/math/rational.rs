@@ -105,7 +105,7 @@ fn parse_decimal(part: &str, whole: &str) -> Result<Rational, ParseRationalError
     }
     let all_digits = format!("{integer}{fraction}");
     let value = BigInt::from_str_radix(&all_digits, 10).map_err(|_| unreadable("a place without digits"))?;
-    let power = exponent - fraction.len() as isize;
+    let power = exponent - fraction.len().cast_signed();
     let scale = BigInt::from(10).pow(power.unsigned_abs() as u32);
     let value = if power < 0 { Rational::new(value, scale) } else { Rational::from_integer(value * scale) };
     Ok(if negative { -value } else { value })

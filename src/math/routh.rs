@@ -134,7 +134,9 @@ mod tests {
     fn hurwitz_matrix(descending: &[BigInt], order: usize) -> Vec<Vec<BigInt>> {
         let at =
             |k: isize| usize::try_from(k).ok().and_then(|k| descending.get(k)).cloned().unwrap_or_default();
-        (0..order).map(|i| (0..order).map(|j| at(2 * j as isize - i as isize + 1)).collect()).collect()
+        (0..order)
+            .map(|i| (0..order).map(|j| at((2 * j).cast_signed() - i.cast_signed() + 1)).collect())
+            .collect()
     }
 
     #[test]
