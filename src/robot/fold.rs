@@ -61,16 +61,18 @@ fn assemble(
     tip: &str,
 ) -> Chain {
     let after = moving.iter().skip(1).map(|next| &next.before).chain([last]);
-    let segments = moving
-        .iter()
-        .zip(after)
-        .map(|(own, after)| Segment {
+    let mut open = 0;
+    let mut segments = Vec::with_capacity(moving.len());
+    for (own, after) in moving.iter().zip(after) {
+        segments.push(Segment {
             after: Frame::new(after),
             multiplier: own.multiplier,
             column: own.column,
+            opens_column: own.column == open,
             motion: own.motion,
-        })
-        .collect();
+        });
+        open = open.max(own.column + 1);
+    }
     let start = Frame::new(&moving[0].before);
     Chain { base: base.to_owned(), tip: tip.to_owned(), joints, reach, start, segments }
 }

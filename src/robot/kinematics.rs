@@ -22,6 +22,8 @@ pub(super) struct Segment {
     pub(super) after: Frame,
     pub(super) multiplier: f64,
     pub(super) column: usize,
+    /// Whether it is the first of its column on the path.
+    pub(super) opens_column: bool,
     pub(super) motion: Motion,
 }
 
@@ -195,27 +197,19 @@ impl Posed<'_> {
     /// When `columns` has not [`Chain::dof`] entries.
     pub fn geometric_jacobian(&self, columns: &mut [Vector6<f64>]) {
         assert_eq!(columns.len(), self.dof(), "one column per joint of the chain");
-        columns.fill(Vector6::zeros());
         let p = self.scratch.tip.p;
         for (segment, axis) in self.chain.segments.iter().zip(&self.scratch.axes) {
             let z = scale(axis.direction, segment.multiplier);
-            let twist = &mut columns[segment.column];
-            match segment.motion {
+            let twist = match segment.motion {
                 Motion::Turn => {
                     let d = add_scaled(p, axis.origin, -1.0);
-                    twist[0] += z[1] * d[2] - z[2] * d[1];
-                    twist[1] += z[2] * d[0] - z[0] * d[2];
-                    twist[2] += z[0] * d[1] - z[1] * d[0];
-                    twist[3] += z[0];
-                    twist[4] += z[1];
-                    twist[5] += z[2];
+                    let v = [z[1] * d[2] - z[2] * d[1], z[2] * d[0] - z[0] * d[2], z[0] * d[1] - z[1] * d[0]];
+                    Vector6::new(v[0], v[1], v[2], z[0], z[1], z[2])
                 }
-                Motion::Shift => {
-                    twist[0] += z[0];
-                    twist[1] += z[1];
-                    twist[2] += z[2];
-                }
-            }
+                Motion::Shift => Vector6::new(z[0], z[1], z[2], 0.0, 0.0, 0.0),
+            };
+            let column = &mut columns[segment.column];
+            if segment.opens_column { *column = twist } else { *column += twist }
         }
     }
 }

@@ -1,0 +1,328 @@
+//! Identities of pose and Jacobian on random trees of all joint types, random base and tip, mimic included.
+#![cfg(feature = "proptest")]
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+use kinstep::nalgebra::{
+    Isometry3, IsometryMatrix3, Rotation3, Translation3, UnitQuaternion, Vector3, Vector6,
+};
+use kinstep::robot::{Chain, ChainError, Robot};
+use proptest::prelude::*;
+
+/// One random joint; it leads to link `l{index + 1}`.
+#[derive(Debug, Clone)]
+struct TestJoint {
+    kind: &'static str,
+    parent: usize,
+    xyz: [f64; 3],
+    rpy: [f64; 3],
+    axis: [f64; 3],
+    mimic: Option<(usize, f64, f64)>,
+}
+
+#[derive(Debug, Clone)]
+struct TestTree {
+    joints: Vec<TestJoint>,
+    is_reversed: bool,
+    q: Vec<f64>,
+}
+
+fn axis() -> impl Strategy<Value = [f64; 3]> {
+    let coordinate = (0..3usize, prop::bool::ANY).prop_map(|(i, negative)| {
+        let mut axis = [0.0; 3];
+        axis[i] = if negative { -1.0 } else { 1.0 };
+        axis
+    });
+    let skew = prop::array::uniform3(-1.0..1.0)
+        .prop_filter("long enough", |axis: &[f64; 3]| axis.iter().map(|x| x * x).sum::<f64>() > 0.01);
+    prop_oneof![coordinate, skew]
+}
+
+fn joint(index: usize) -> impl Strategy<Value = TestJoint> {
+    let kind = prop_oneof![
+        3 => Just("revolute"), 2 => Just("continuous"), 2 => Just("prismatic"), 1 => Just("fixed")
+    ];
+    let multiplier = prop_oneof![0.3..2.0, -2.0..-0.3];
+    let mimic = prop::option::weighted(0.3, (0..index.max(1), multiplier, -1.0..1.0));
+    let vectors = (prop::array::uniform3(-1.0..1.0), prop::array::uniform3(-3.0..3.0), axis());
+    (kind, 0..=index, vectors, mimic).prop_map(move |(kind, parent, (xyz, rpy, axis), mimic)| TestJoint {
+        kind,
+        parent,
+        xyz,
+        rpy,
+        axis,
+        mimic: mimic.filter(|_| kind != "fixed" && index > 0),
+    })
+}
+
+fn tree() -> impl Strategy<Value = TestTree> {
+    (2..10usize).prop_flat_map(|count| {
+        let joints: Vec<_> = (0..count).map(joint).collect();
+        (joints, prop::bool::ANY, prop::collection::vec(-2.0..2.0, count)).prop_map(
+            |(mut joints, is_reversed, q)| {
+                for index in 0..joints.len() {
+                    let target = joints[index].mimic.map(|(target, ..)| joints[target].kind);
+                    joints[index].mimic = joints[index].mimic.filter(|_| target != Some("fixed"));
+                }
+                TestTree { joints, is_reversed, q }
+            },
+        )
+    })
+}
+
+impl TestTree {
+    fn urdf(&self) -> String {
+        let mut elements: Vec<String> =
+            self.joints.iter().enumerate().map(|(index, own)| own.urdf(index)).collect();
+        if self.is_reversed {
+            elements.reverse();
+        }
+        let links: String = (0..=self.joints.len()).fold(String::new(), |mut links, index| {
+            let _ = write!(links, "<link name=\"l{index}\"/>");
+            links
+        });
+        format!("<robot name=\"random\">{}{links}</robot>", elements.concat())
+    }
+
+    fn robot(&self) -> Robot {
+        Robot::from_urdf(&self.urdf()).expect("the tree is sound")
+    }
+
+    /// Position of a joint, its driver's followed through.
+    fn position(&self, index: usize) -> f64 {
+        match self.joints[index].mimic {
+            Some((driver, multiplier, offset)) => multiplier * self.position(driver) + offset,
+            None => self.q[index],
+        }
+    }
+
+    /// Poses of all links in link 0, with quaternions and one frame per joint: nothing is folded.
+    fn poses(&self) -> Vec<Isometry3<f64>> {
+        let mut poses = vec![Isometry3::identity()];
+        for (index, own) in self.joints.iter().enumerate() {
+            let axis = Vector3::from(own.axis).normalize() * self.position(index);
+            let motion = match own.kind {
+                "fixed" => Isometry3::identity(),
+                "prismatic" => Isometry3::from_parts(axis.into(), UnitQuaternion::identity()),
+                _ => Isometry3::from_parts(Translation3::identity(), UnitQuaternion::from_scaled_axis(axis)),
+            };
+            let [roll, pitch, yaw] = own.rpy;
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * yaw)
+                * UnitQuaternion::from_scaled_axis(Vector3::y() * pitch)
+                * UnitQuaternion::from_scaled_axis(Vector3::x() * roll);
+            let origin = Isometry3::from_parts(Vector3::from(own.xyz).into(), turn);
+            poses.push(poses[own.parent] * origin * motion);
+        }
+        poses
+    }
+
+    /// The positions of a chain's joints.
+    fn q_of(&self, chain: &Chain) -> Vec<f64> {
+        chain
+            .joints()
+            .iter()
+            .map(|own| self.q[own.name[1..].parse::<usize>().expect("joints are j0, j1, ...")])
+            .collect()
+    }
+}
+
+impl TestJoint {
+    fn urdf(&self, index: usize) -> String {
+        let ([x, y, z], [roll, pitch, yaw], [a, b, c]) = (self.xyz, self.rpy, self.axis);
+        let mimic = self.mimic.map_or(String::new(), |(driver, multiplier, offset)| {
+            format!("<mimic joint=\"j{driver}\" multiplier=\"{multiplier:?}\" offset=\"{offset:?}\"/>")
+        });
+        format!(
+            "<joint name=\"j{index}\" type=\"{}\"><origin xyz=\"{x:?} {y:?} {z:?}\" rpy=\"{roll:?} {pitch:?} {yaw:?}\"/>\
+             <parent link=\"l{}\"/><child link=\"l{}\"/><axis xyz=\"{a:?} {b:?} {c:?}\"/>\
+             <limit lower=\"-20\" upper=\"20\" effort=\"1\" velocity=\"1\"/>{mimic}</joint>",
+            self.kind,
+            self.parent,
+            index + 1
+        )
+    }
+}
+
+/// A chain run at the tree's positions: pose and the Jacobian's columns by joint name.
+struct Run {
+    pose: IsometryMatrix3<f64>,
+    columns: HashMap<String, Vector6<f64>>,
+}
+
+/// Runs the chain between two links; where nothing moves between them the pose is constant.
+fn run(robot: &Robot, tree: &TestTree, base: usize, tip: usize) -> Run {
+    match robot.chain(&format!("l{base}"), &format!("l{tip}")) {
+        Ok(chain) => run_chain(&chain, tree),
+        Err(ChainError::SameLink { .. } | ChainError::Rigid { .. }) => {
+            let poses = tree.poses();
+            let pose = poses[base].inv_mul(&poses[tip]);
+            let rotation = pose.rotation.to_rotation_matrix();
+            Run { pose: IsometryMatrix3::from_parts(pose.translation, rotation), columns: HashMap::new() }
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn run_chain(chain: &Chain, tree: &TestTree) -> Run {
+    let mut scratch = chain.scratch();
+    let mut columns = vec![Vector6::repeat(f64::NAN); chain.dof()];
+    let posed = chain.forward(&tree.q_of(chain), &mut scratch);
+    posed.geometric_jacobian(&mut columns);
+    let names = chain.joints().iter().map(|own| own.name.clone());
+    Run { pose: posed.pose(), columns: names.zip(columns).collect() }
+}
+
+impl Run {
+    fn column(&self, name: &str) -> Vector6<f64> {
+        self.columns.get(name).copied().unwrap_or_default()
+    }
+
+    fn linear(&self, name: &str) -> Vector3<f64> {
+        self.column(name).fixed_rows::<3>(0).into()
+    }
+
+    fn angular(&self, name: &str) -> Vector3<f64> {
+        self.column(name).fixed_rows::<3>(3).into()
+    }
+}
+
+fn twist(linear: Vector3<f64>, angular: Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
+}
+
+fn distance(a: &IsometryMatrix3<f64>, b: &IsometryMatrix3<f64>) -> f64 {
+    (a.translation.vector - b.translation.vector).norm() + (a.rotation.matrix() - b.rotation.matrix()).norm()
+}
+
+/// Twist of the tip by a central difference along joint velocities `rates`.
+fn differenced(chain: &Chain, q: &[f64], rates: &[f64]) -> Vector6<f64> {
+    const STEP: f64 = 1e-5;
+    let at = |sign: f64| {
+        let moved: Vec<f64> = q.iter().zip(rates).map(|(q, rate)| q + sign * STEP * rate).collect();
+        chain.forward(&moved, &mut chain.scratch()).pose()
+    };
+    let (ahead, behind) = (at(1.0), at(-1.0));
+    let linear = (ahead.translation.vector - behind.translation.vector) / (2.0 * STEP);
+    let turn: Rotation3<f64> = ahead.rotation * behind.rotation.inverse();
+    twist(linear, UnitQuaternion::from_rotation_matrix(&turn).scaled_axis() / (2.0 * STEP))
+}
+
+/// A tree and three of its links.
+fn case() -> impl Strategy<Value = (TestTree, [usize; 3])> {
+    tree().prop_flat_map(|tree| {
+        let count = tree.joints.len() + 1;
+        (Just(tree), prop::array::uniform3(0..count))
+    })
+}
+
+proptest! {
+    #[test]
+    fn the_folded_chain_is_the_product_of_all_frames((tree, [base, tip, _]) in case()) {
+        let robot = tree.robot();
+        let poses = tree.poses();
+        let expected = poses[base].inv_mul(&poses[tip]);
+        let expected = IsometryMatrix3::from_parts(expected.translation, expected.rotation.to_rotation_matrix());
+        prop_assert!(distance(&run(&robot, &tree, base, tip).pose, &expected) < 1e-12);
+    }
+
+    #[test]
+    fn every_column_is_a_central_difference_and_j_qdot_is_the_twist(
+        (tree, [base, tip, _]) in case(),
+        rates in prop::collection::vec(-1.0..1.0, 10),
+    ) {
+        let robot = tree.robot();
+        let Ok(chain) = robot.chain(&format!("l{base}"), &format!("l{tip}")) else { return Ok(()) };
+        let q = tree.q_of(&chain);
+        let run = run_chain(&chain, &tree);
+        let mut moved = Vector6::zeros();
+        for (index, own) in chain.joints().iter().enumerate() {
+            let mut unit = vec![0.0; chain.dof()];
+            unit[index] = 1.0;
+            prop_assert!((run.column(&own.name) - differenced(&chain, &q, &unit)).norm() < 1e-7);
+            moved += run.column(&own.name) * rates[index];
+        }
+        prop_assert!((moved - differenced(&chain, &q, &rates[..chain.dof()])).norm() < 1e-7);
+    }
+
+    #[test]
+    fn a_reversed_path_is_minus_the_adjoint((tree, [base, tip, _]) in case()) {
+        let robot = tree.robot();
+        let (there, back) = (run(&robot, &tree, base, tip), run(&robot, &tree, tip, base));
+        prop_assert!(distance(&back.pose, &there.pose.inverse()) < 1e-12);
+        prop_assert_eq!(there.columns.len(), back.columns.len());
+        let (p, turn) = (there.pose.translation.vector, there.pose.rotation.inverse());
+        for name in there.columns.keys() {
+            let (v, w) = (there.linear(name), there.angular(name));
+            let expected = twist(-(turn * (v - w.cross(&p))), -(turn * w));
+            prop_assert!((back.column(name) - expected).norm() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn chains_compose((tree, [a, b, c]) in case()) {
+        let robot = tree.robot();
+        let (ab, bc, ac) = (run(&robot, &tree, a, b), run(&robot, &tree, b, c), run(&robot, &tree, a, c));
+        prop_assert!(distance(&(ab.pose * bc.pose), &ac.pose) < 1e-12);
+        let arm = ab.pose.rotation * bc.pose.translation.vector;
+        for name in ab.columns.keys().chain(bc.columns.keys()).chain(ac.columns.keys()) {
+            let w = ab.angular(name);
+            let linear = ab.linear(name) + w.cross(&arm) + ab.pose.rotation * bc.linear(name);
+            let expected = twist(linear, w + ab.pose.rotation * bc.angular(name));
+            prop_assert!((ac.column(name) - expected).norm() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn a_relative_chain_is_the_difference_of_absolute_ones((tree, [left, right, _]) in case()) {
+        let robot = tree.robot();
+        let (one, two) = (run(&robot, &tree, 0, left), run(&robot, &tree, 0, right));
+        let relative = run(&robot, &tree, left, right);
+        let turn = one.pose.rotation.inverse();
+        let apart = two.pose.translation.vector - one.pose.translation.vector;
+        for name in one.columns.keys().chain(two.columns.keys()).chain(relative.columns.keys()) {
+            let v = two.linear(name) - one.linear(name) - one.angular(name).cross(&apart);
+            let expected = twist(turn * v, turn * (two.angular(name) - one.angular(name)));
+            prop_assert!((relative.column(name) - expected).norm() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn a_mount_moves_the_pose_and_turns_the_jacobian(
+        (tree, [base, tip, _]) in case(),
+        shift in prop::array::uniform3(-3.0..3.0),
+        turn in prop::array::uniform3(-3.0..3.0),
+    ) {
+        let robot = tree.robot();
+        let Ok(chain) = robot.chain(&format!("l{base}"), &format!("l{tip}")) else { return Ok(()) };
+        let mount = IsometryMatrix3::new(Vector3::from(shift), Vector3::from(turn));
+        let (plain, mounted) = (run_chain(&chain, &tree), run_chain(&chain.mounted(&mount), &tree));
+        prop_assert!(distance(&mounted.pose, &(mount * plain.pose)) < 1e-12);
+        for name in plain.columns.keys() {
+            let expected = twist(mount.rotation * plain.linear(name), mount.rotation * plain.angular(name));
+            prop_assert!((mounted.column(name) - expected).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn two_poses_are_never_further_apart_than_twice_the_reach((tree, [base, tip, _]) in case(), scale in -1.0..1.0) {
+        let robot = tree.robot();
+        let Ok(chain) = robot.chain(&format!("l{base}"), &format!("l{tip}")) else { return Ok(()) };
+        let q = tree.q_of(&chain);
+        let other: Vec<f64> = q.iter().map(|q| scale * q).collect();
+        let at = |q: &[f64]| chain.forward(q, &mut chain.scratch()).position();
+        prop_assert!((at(&q) - at(&other)).norm() <= 2.0 * chain.reach() + 1e-12);
+    }
+
+    #[test]
+    fn parents_stand_before_their_children((tree, _) in case()) {
+        let robot = tree.robot();
+        prop_assert_eq!(robot.links().len(), tree.joints.len() + 1);
+        prop_assert!(robot.joints().iter().all(|own| own.parent < own.child));
+        let drawn: Vec<_> = robot.tree().collect();
+        prop_assert_eq!(drawn.len(), robot.links().len());
+        for pair in drawn.windows(2) {
+            prop_assert!(pair[1].depth <= pair[0].depth + 1);
+        }
+    }
+}
