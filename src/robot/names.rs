@@ -14,13 +14,13 @@ pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
         return Vec::new();
     }
     let wanted = name.to_lowercase();
+    let most = (length / 3).max(2).min(length - 1);
     let mut ranked: Vec<(usize, &str)> = known
         .into_iter()
         .filter(|candidate| candidate.len() <= 2 * LONGEST)
         .filter_map(|candidate| {
             let distance = strsim::osa_distance(&wanted, &candidate.to_lowercase());
-            (distance <= (length / 3).max(2) || is_part_of(&wanted, candidate))
-                .then_some((distance, candidate))
+            (distance <= most || is_part_of(&wanted, candidate)).then_some((distance, candidate))
         })
         .collect();
     ranked.sort_unstable();

@@ -168,7 +168,8 @@ fn torn(text: &str, outline: &Outline<'_>, report: &Report<'_>) -> Option<(usize
         Some(Stop::Torn { offset, inside }) => Some((
             text.len(),
             format!(
-                "the file ends inside {inside} that begins on line {}: it is cut off",
+                "the file ends inside {inside} that begins on line {}: it is cut off, or an end mark (a quote, `>`) is \
+                 missing there",
                 report.line(offset)
             ),
         )),
@@ -204,7 +205,7 @@ fn read_document(
         let cause = format!("the file declares encoding {} but is UTF-8; read as UTF-8", quote(name));
         report.warning(0, cause);
     }
-    if let Some((offset, cause)) = element::check_attributes(root, Known::ROBOT, options.strict, report) {
+    for (offset, cause) in element::check_attributes(root, Known::ROBOT, options.strict, report) {
         report.error(offset, cause);
     }
     let name = robot_name(root, options, report);
@@ -214,7 +215,9 @@ fn read_document(
     note_ignored(root, report);
     let (links, mut joints, _) = (links?, joints?, version?);
     if links.is_empty() {
-        report.error(element::offset(root), "the robot has no link: there is nothing to move");
+        if element::children_named(root, "link").next().is_none() {
+            report.error(element::offset(root), "the robot has no link: there is nothing to move");
+        }
         return None;
     }
     values::read_values(&mut joints, report);
@@ -227,22 +230,17 @@ fn check_root(root: Node<'_, '_>, report: &mut Report<'_>) -> bool {
     let cause = match name {
         "robot" => return true,
         "sdf" | "gazebo" | "world" => {
-            "this is SDF, not URDF; export a URDF from the source of the model, or convert it (for example \
-             with `gz sdf` or `sdformat-urdf`)"
+            "this is SDF, not URDF; use the URDF that it was made from, or convert it (ROS 2 has `sdformat_urdf` \
+             for this)"
         }
         "mujoco" | "mujocoinclude" => {
             "this is MJCF (MuJoCo), not URDF; look for the robot's URDF, from which MJCF files are usually made"
         }
         "COLLADA" => "this is a COLLADA mesh, not URDF; name the .urdf file",
-        _ if name.eq_ignore_ascii_case("robot") => {
-            "the root element must be written `<robot>`, in lower case"
-        }
-        _ => "",
+        _ if name.eq_ignore_ascii_case("robot") => "write `<robot>`, in lower case",
+        _ => "a URDF begins with `<robot>`",
     };
-    let cause = match cause {
-        "" => format!("the root element is {}; a URDF's is `<robot>`", element_name(name)),
-        known => format!("the root element is {}: {known}", element_name(name)),
-    };
+    let cause = format!("the root element is {}: {cause}", element_name(name));
     report.error(element::offset(root), cause);
     false
 }

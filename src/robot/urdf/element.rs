@@ -3,7 +3,7 @@
 use roxmltree::{Attribute, Node};
 
 use super::report::Report;
-use crate::robot::names::quote;
+use crate::robot::names::{list, quote};
 
 /// An element and the attributes that URDF gives it.
 #[derive(Clone, Copy)]
@@ -62,37 +62,31 @@ pub(super) fn is_misspelling(name: &str, known: &str) -> bool {
         && (name.eq_ignore_ascii_case(known) || strsim::osa_distance(name, known) <= most)
 }
 
-/// Reports attributes that URDF does not know, and returns the message when one is an error: a slip for a
-/// known attribute that is absent, or any at all when `strict`.
+/// Reports attributes that URDF does not know, and returns those that are errors with their messages: a slip
+/// for a known attribute that is absent, or any at all when `strict`.
 pub(super) fn check_attributes(
     node: Node<'_, '_>,
     known: Known,
     strict: bool,
     report: &mut Report<'_>,
-) -> Option<(usize, String)> {
-    let mut error = None;
+) -> Vec<(usize, String)> {
+    let mut errors = Vec::new();
     for attribute in node.attributes().filter(|attribute| attribute.namespace().is_none()) {
         let name = attribute.name();
         if known.attributes.contains(&name) {
             continue;
         }
-        let absent = known.attributes.iter().filter(|known| self::attribute(node, known).is_none());
-        let meant = absent.into_iter().find(|known| is_misspelling(name, known));
+        let mut absent = known.attributes.iter().filter(|known| self::attribute(node, known).is_none());
+        let meant = absent.find(|known| is_misspelling(name, known));
         let place = attribute.range().start;
         let cause = format!("`<{}>` has no attribute {}", known.element, quote(name));
         match meant {
-            Some(meant) => {
-                error.get_or_insert((place, format!("{cause}; did you mean `{meant}`?")));
-            }
+            Some(meant) => errors.push((place, format!("{cause}; did you mean `{meant}`?"))),
             None if strict => {
-                error.get_or_insert((place, format!("{cause}; it has {}", list(known.attributes))));
+                errors.push((place, format!("{cause}; it has {}", list(known.attributes, "and"))));
             }
             None => report.warning(place, format!("{cause}; it is ignored")),
         }
     }
-    error
-}
-
-fn list(names: &[&str]) -> String {
-    crate::robot::names::list(names, "and")
+    errors
 }

@@ -43,13 +43,11 @@ fn first_error(diagnostics: &[Diagnostic]) -> Option<&Diagnostic> {
 }
 
 fn summary(diagnostics: &[Diagnostic]) -> String {
-    let errors = diagnostics.iter().filter(|found| found.severity == Severity::Error).count();
-    let first = first_error(diagnostics)
-        .map(|found| format!("line {}, column {}: {}", found.line, found.column, found.message));
-    match (first, errors) {
-        (Some(first), 2) => format!("{first} (and 1 more error)"),
-        (Some(first), 3..) => format!("{first} (and {} more errors)", errors - 1),
-        (first, _) => first.unwrap_or_else(|| "the URDF can not be read".to_owned()),
+    match first_error(diagnostics) {
+        Some(first) => {
+            format!("line {}, column {}: {}{}", first.line, first.column, first.message, more(diagnostics))
+        }
+        None => "the URDF can not be read".to_owned(),
     }
 }
 
@@ -68,7 +66,7 @@ pub enum ReadError {
         source: io::Error,
     },
     /// The file is read, but no robot can be made of it.
-    #[error("{}: {error}", .path.display())]
+    #[error("{}", placed(.path, .error))]
     Urdf {
         /// The file.
         path: PathBuf,
@@ -81,6 +79,26 @@ impl ReadError {
     pub(super) fn file(path: &Path, source: io::Error) -> ReadError {
         let directory = path.is_relative().then(|| std::env::current_dir().ok()).flatten();
         ReadError::File { path: path.to_owned(), directory, source }
+    }
+}
+
+/// Writes `file:line:column: message`.
+fn placed(path: &Path, error: &UrdfError) -> String {
+    let path = path.display();
+    match error.first() {
+        Some(first) => {
+            let more = more(&error.diagnostics);
+            format!("{path}:{}:{}: {}{more}", first.line, first.column, first.message)
+        }
+        None => format!("{path}: {error}"),
+    }
+}
+
+fn more(diagnostics: &[Diagnostic]) -> String {
+    match diagnostics.iter().filter(|found| found.severity == Severity::Error).count() {
+        0 | 1 => String::new(),
+        2 => " (and 1 more error)".to_owned(),
+        n => format!(" (and {} more errors)", n - 1),
     }
 }
 

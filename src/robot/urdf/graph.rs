@@ -35,7 +35,7 @@ pub(super) fn assemble(
     let mut above = parents(links, &mut joints, &ends, report);
     let looped = open_loops(links, &mut joints, &mut above, report);
     check_roots(links, &joints, &above, &looped, report);
-    if !joints.iter().any(RawJoint::is_movable) {
+    if !joints.iter().any(|joint| joint.is_movable() || joint.kind.is_none()) {
         report.error(root, "the robot has no movable joint (revolute, continuous or prismatic)");
     }
     let motions = mimic::resolve(&mut joints, report);

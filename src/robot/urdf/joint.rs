@@ -49,11 +49,7 @@ pub(super) struct RawJoint {
 impl RawJoint {
     /// How messages call it.
     pub(super) fn label(&self) -> String {
-        if self.name.is_empty() {
-            "a joint without a name".to_owned()
-        } else {
-            format!("joint {}", quote(&self.name))
-        }
+        if self.name.is_empty() { "a joint".to_owned() } else { format!("joint {}", quote(&self.name)) }
     }
 
     /// Reports an error, which makes the joint defective.
@@ -126,7 +122,7 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
     fn read(mut self) -> RawJoint {
         match name_of(self.node) {
             Ok(name) => name.clone_into(&mut self.joint.name),
-            Err(cause) => self.fail(self.joint.offset, cause),
+            Err(cause) => self.fail(self.joint.offset, format!("it {cause}")),
         }
         self.known_attributes(self.node, Known::JOINT);
         self.misspelt_children();
@@ -139,7 +135,7 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
         self.mimic();
         if matches!(self.joint.kind, Some(JointKind::Floating | JointKind::Planar | JointKind::Spherical)) {
             let kind = self.joint.kind.map_or("", JointKind::as_str);
-            self.note(self.joint.offset, &format!("is {kind}: no chain can pass through it"));
+            self.note(self.joint.offset, &format!("it is {kind}: no chain can pass through it"));
         }
         self.joint
     }
@@ -157,8 +153,7 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
     }
 
     pub(super) fn known_attributes(&mut self, node: Node<'a, 'i>, known: Known) {
-        if let Some((place, cause)) = element::check_attributes(node, known, self.options.strict, self.report)
-        {
+        for (place, cause) in element::check_attributes(node, known, self.options.strict, self.report) {
             self.fail(place, cause);
         }
     }
@@ -169,7 +164,7 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
         let (first, second) = (found.next()?, found.next());
         if let Some(second) = second {
             let line = self.report.line(element::offset(first));
-            let cause = format!("has a second `<{}>`; the first one (line {line}) is used", known.element);
+            let cause = format!("it has a second `<{}>`; the first one (line {line}) is used", known.element);
             self.warn(element::offset(second), &cause);
         }
         self.known_attributes(first, known);
@@ -194,7 +189,7 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
 
     fn kind(&mut self) -> Option<JointKind> {
         let Some(attribute) = element::attribute(self.node, "type") else {
-            self.fail(self.joint.offset, format!("has no type; the types are {}", kinds()));
+            self.fail(self.joint.offset, format!("it has no type; the types are {}", kinds()));
             return None;
         };
         let name = attribute.value();
@@ -212,13 +207,15 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
         let mut found = element::children_named(self.node, known.element);
         let (first, second) = (found.next(), found.next());
         let Some(first) = first else {
-            self.fail(self.joint.offset, format!("has no `<{} link=\"...\"/>`", known.element));
+            self.fail(self.joint.offset, format!("it has no `<{} link=\"...\"/>`", known.element));
             return None;
         };
         if let Some(second) = second {
             let line = self.report.line(element::offset(first));
-            let cause =
-                format!("has two `<{}>` elements, the first on line {line}; a joint has one", known.element);
+            let cause = format!(
+                "it has two `<{}>` elements, the first on line {line}; a joint has one",
+                known.element
+            );
             self.fail(element::offset(second), cause);
         }
         self.known_attributes(first, known);

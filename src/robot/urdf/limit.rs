@@ -32,6 +32,7 @@ pub(super) fn read(reader: &mut Reader<'_, '_, '_, '_>) {
     let velocity = speed(reader, node, "velocity").unwrap_or(f64::INFINITY);
     let _ = speed(reader, node, "effort");
     let (lower, upper) = if is_bounded { bounds(reader, node) } else { (f64::NEG_INFINITY, f64::INFINITY) };
+    warn_of_missing(reader, node, is_bounded);
     if velocity == 0.0 {
         reader.warn(element::offset(node), "its velocity limit is 0: this joint can never move");
     }
@@ -49,10 +50,10 @@ fn missing(reader: &mut Reader<'_, '_, '_, '_>) {
     let offset = reader.joint.offset;
     let kind = reader.joint.kind.map_or("", JointKind::as_str);
     if reader.options.assume_unlimited {
-        reader.warn(offset, &format!("is {kind} and has no `<limit>`; taken as unlimited"));
+        reader.warn(offset, &format!("it is {kind} and has no `<limit>`; taken as unlimited"));
     } else {
         let cause = format!(
-            "is {kind} and has no `<limit>`; add `<limit lower=\"...\" upper=\"...\" effort=\"...\" \
+            "it is {kind} and has no `<limit>`; add `<limit lower=\"...\" upper=\"...\" effort=\"...\" \
              velocity=\"...\"/>`, or ask to assume it unlimited"
         );
         reader.fail(offset, cause);
@@ -64,19 +65,6 @@ fn bounds(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>) -> (f64, f64)
     let upper = value(reader, node, "upper");
     let is_given = |name| element::attribute(node, name).is_some();
     let place = element::offset(node);
-    if reader.version < Version::V1_2 {
-        match (is_given("lower"), is_given("upper")) {
-            (false, false) => {
-                reader.warn(
-                    place,
-                    "has neither `lower` nor `upper` limit: its range is unknown and not checked",
-                );
-            }
-            (false, true) => reader.warn(place, "has no `lower` limit; the standard takes it as 0"),
-            (true, false) => reader.warn(place, "has no `upper` limit; the standard takes it as 0"),
-            (true, true) => {}
-        }
-    }
     let one_is_missing = reader.version < Version::V1_2 && is_given("lower") != is_given("upper");
     let missing = |infinite: f64| if one_is_missing { 0.0 } else { infinite };
     let (lower, upper) =
@@ -87,6 +75,30 @@ fn bounds(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>) -> (f64, f64)
         reader.warn(place, &format!("its lower and upper limits are both {lower}: the joint can not move"));
     }
     (lower, upper)
+}
+
+/// Says how absent limits are understood; of a joint that is defective anyway nobody needs to know.
+fn warn_of_missing(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>, is_bounded: bool) {
+    if reader.version >= Version::V1_2 || reader.joint.defect.is_some() {
+        return;
+    }
+    let place = element::offset(node);
+    let is_given = |name| element::attribute(node, name).is_some();
+    match (is_given("lower"), is_given("upper")) {
+        _ if !is_bounded => {}
+        (false, false) => {
+            reader.warn(
+                place,
+                "it has neither `lower` nor `upper` limit: its range is unknown and not checked",
+            );
+        }
+        (false, true) => reader.warn(place, "it has no `lower` limit; the standard takes it as 0"),
+        (true, false) => reader.warn(place, "it has no `upper` limit; the standard takes it as 0"),
+        (true, true) => {}
+    }
+    if !is_given("velocity") {
+        reader.warn(place, "it has no `velocity` limit: its speed is not checked");
+    }
 }
 
 /// Returns a velocity or effort limit, not negative.

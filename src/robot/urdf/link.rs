@@ -40,8 +40,7 @@ pub(super) fn read_links(
     let mut without_inertia = Vec::new();
     for node in element::children_named(root, "link") {
         let place = element::offset(node);
-        let misspelt = element::check_attributes(node, Known::LINK, options.strict, report);
-        if let Some((at, cause)) = misspelt {
+        for (at, cause) in element::check_attributes(node, Known::LINK, options.strict, report) {
             report.error(at, cause);
         }
         let name = match name_of(node) {
@@ -114,14 +113,15 @@ fn check_geometry(node: Node<'_, '_>, name: &str, report: &mut Report<'_>) {
         let geometry = element::children_named(part, "geometry").next();
         let place = element::offset(geometry.unwrap_or(part));
         let shape = geometry.and_then(|geometry| element::children(geometry).next());
-        let cause = match (geometry, shape.map(|shape| shape.tag_name().name())) {
-            (None, _) => "has no `<geometry>`".to_owned(),
-            (Some(_), None) => "has an empty `<geometry>`".to_owned(),
+        let (cause, remedy) = match (geometry, shape.map(|shape| shape.tag_name().name())) {
+            (None, _) => ("has no `<geometry>`".to_owned(), String::new()),
+            (Some(_), None) => ("has an empty `<geometry>`".to_owned(), String::new()),
             (Some(_), Some(shape)) if SHAPES.contains(&shape) => continue,
             (Some(_), Some(shape)) => {
-                format!("has the shape {}{}", quote(shape), report.suggestion(shape, SHAPES))
+                (format!("has the unknown shape {}", quote(shape)), report.suggestion(shape, SHAPES))
             }
         };
-        report.warning(place, format!("link {}: its `<{what}>` {cause}; kinematics ignores it", quote(name)));
+        let cause = format!("link {}: its `<{what}>` {cause}, which kinematics ignores{remedy}", quote(name));
+        report.warning(place, cause);
     }
 }
