@@ -34,11 +34,115 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
+    /// Plan the motion of a scenario; without a file, of two real arms in a built-in one
+    #[command(after_help = "\
+Examples:
+  kinstep plan
+  kinstep plan mine.toml --out results --force
+  kinstep plan mine.toml --set sigma=0.005 --set law.h=0.3
+  kinstep plan mine.toml --set formula=split-ab6 --set law.h=1 --json
+  kinstep plan mine.toml --set 'arm.left.q0=[0.1, 0.2, \"pi/2\", 0]'
+
+Setting one of law.h and law.gain takes the other away.")]
+    Plan(PlanArguments),
+    /// Run the paper's experiments beside the bounds that it states; exit 1 if one is missed
+    #[command(after_help = "Examples:\n  kinstep reproduce\n  kinstep reproduce --out paper --json")]
+    Reproduce(ReproduceArguments),
+    /// Look at difference formulas: list, show, check rows of your own
+    #[command(subcommand)]
+    Formula(FormulaCommand),
     /// Look at robots: list, show, check, pose and Jacobian
     #[command(subcommand)]
     Robot(RobotCommand),
     /// Print the JSON Schema of a kind of file
     Schema(SchemaArguments),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct PlanArguments {
+    /// The scenario, a TOML file (`kinstep schema scenario` has its keys)
+    pub(super) scenario: Option<PathBuf>,
+
+    /// Folder for trajectory.csv, plan.json and scenario.toml; made if it is not there
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+
+    /// Lay a value over the scenario; arms by name. May be given again
+    #[arg(long, value_name = "KEY.PATH=VALUE")]
+    pub(super) set: Vec<String>,
+
+    /// Replace files that are already there
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ReproduceArguments {
+    /// Folder for the trajectories and reproduce.json; made if it is not there
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+
+    /// Replace files that are already there
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum FormulaCommand {
+    /// List the formulas: built-in ones and those of --formulas
+    List,
+    /// Show formulas in full, by id or typed at the prompt
+    #[command(after_help = "\
+Examples:
+  kinstep formula show la6-wang-guo split-ab6
+  kinstep formula show --difference 24,-5,-12,-6,-4,3 --denominator 48
+  kinstep formula show --alpha 1,-1,0 --beta 0,3/2,-1/2 --gamma 0,1,0
+
+Newest sample first: the first coefficient belongs to x_n+1.")]
+    Show(FormulaShow),
+    /// Check the rows of a file: what they declare against what their coefficients say
+    #[command(after_help = "\
+Examples:
+  kinstep formula check mine.toml
+  kinstep formula check draft.toml --draft      computes what is not declared and prints finished rows")]
+    Check(FormulaCheck),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct FormulaShow {
+    /// Ids of formulas
+    #[arg(value_name = "ID")]
+    pub(super) ids: Vec<String>,
+
+    /// Numerators of a difference formula, newest sample first
+    #[arg(long, value_name = "A,...", allow_hyphen_values = true, conflicts_with_all = ["alpha", "beta", "gamma"])]
+    pub(super) difference: Option<String>,
+
+    /// Denominator of --difference; 1 unless given
+    #[arg(long, value_name = "D", allow_hyphen_values = true, requires = "difference")]
+    pub(super) denominator: Option<String>,
+
+    /// Weights of the states, newest sample first
+    #[arg(long, value_name = "A,...", allow_hyphen_values = true, requires = "beta")]
+    pub(super) alpha: Option<String>,
+
+    /// Weights of the right-hand side f
+    #[arg(long, value_name = "B,...", allow_hyphen_values = true, requires = "alpha")]
+    pub(super) beta: Option<String>,
+
+    /// Weights of the feedback g; those of f unless given
+    #[arg(long, value_name = "G,...", allow_hyphen_values = true, requires = "alpha")]
+    pub(super) gamma: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct FormulaCheck {
+    /// A TOML file of rows (`kinstep schema formula` has its keys)
+    pub(super) file: PathBuf,
+
+    /// Compute the facts that rows do not declare, and print the finished rows
+    #[arg(long)]
+    pub(super) draft: bool,
 }
 
 #[derive(Debug, Subcommand)]

@@ -59,11 +59,6 @@ impl Failure {
         self.file = Some(file.to_owned());
         self
     }
-
-    pub(super) fn at(mut self, place: Option<Place>) -> Self {
-        self.place = place;
-        self
-    }
 }
 
 impl From<ScenarioError> for Failure {

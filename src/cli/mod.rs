@@ -1,11 +1,15 @@
 //! The command line: arguments in, a document out, an exit code for scripts.
 
 mod arguments;
-#[allow(dead_code)]
 mod failure;
+mod folder;
+mod formula;
+mod formula_card;
 mod formula_schema;
-#[allow(dead_code)]
 mod output;
+mod plan;
+mod progress;
+mod reproduce;
 mod robot;
 mod schema;
 
@@ -44,7 +48,11 @@ fn usage(error: &clap::Error) -> String {
 }
 
 fn dispatch(arguments: &Arguments, output: &mut Output) -> Result<Exit, Failure> {
+    let own = arguments.formulas.as_deref();
     match &arguments.command {
+        Command::Plan(command) => plan::run(command, own, output),
+        Command::Reproduce(command) => reproduce::run(command, output),
+        Command::Formula(command) => formula::run(command, own, output),
         Command::Robot(command) => robot::run(command, output),
         Command::Schema(command) => schema::run(*command, output),
     }

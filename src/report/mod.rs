@@ -1,7 +1,17 @@
 //! Results written down: one trait, one file per format, and files that are whole or not there.
 
 mod file;
+mod plan;
+mod plan_csv;
+#[cfg(feature = "cli")]
+mod plan_json;
+mod plan_text;
 mod table;
 
 pub use file::{WriteError, write_whole};
+pub use plan::PlanFormat;
+pub use plan_csv::PlanCsv;
+#[cfg(feature = "cli")]
+pub use plan_json::PlanJson;
+pub use plan_text::PlanText;
 pub use table::{Table, short, sparkline};

@@ -3,6 +3,7 @@
 //! [`ScenarioText`] is the text of a file with the positions of its keys and the values laid over it from
 //! outside; [`Scenario`] is what it says. Every refusal is a [`ScenarioError`] that names the key and its place.
 
+mod build;
 mod check;
 mod document;
 mod error;
@@ -16,6 +17,7 @@ mod robots;
 #[cfg(test)]
 mod tests;
 
+pub use build::with_formulas;
 pub use document::ScenarioText;
 pub use error::{ErrorKind, Place, ScenarioError};
 pub use expression::{ExpressionError, evaluate};
@@ -24,3 +26,8 @@ pub use model::{ArmSpec, LawKind, LawSpec, Mount, Scenario, Start, TaskKind};
 pub use path_spec::{PathKind, PathSpec, Plane, TimeLawKind, TurnSpec};
 pub use real::Real;
 pub use robots::RobotSource;
+
+#[cfg(feature = "cli")]
+pub(crate) use build::refused_rows;
+#[cfg(feature = "cli")]
+pub(crate) use document::read_text;

@@ -1,0 +1,42 @@
+//! The folder that a command writes its files to.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::failure::{Exit, Failure};
+use crate::report::{WriteError, write_whole};
+
+/// A folder for results, and whether files in it may be replaced.
+pub(super) struct Folder {
+    path: PathBuf,
+    replace: bool,
+}
+
+impl Folder {
+    /// Makes the folder, unless it is there, and refuses before anything is computed if one of `names` is in it.
+    pub(super) fn open(path: &Path, replace: bool, names: &[&str]) -> Result<Self, Failure> {
+        std::fs::create_dir_all(path)
+            .map_err(|source| failure(&WriteError::Io { path: path.to_owned(), source }))?;
+        let folder = Self { path: path.to_owned(), replace };
+        match names.iter().map(|name| folder.path.join(name)).find(|file| file.symlink_metadata().is_ok()) {
+            Some(file) if !replace => Err(failure(&WriteError::Exists(file))),
+            _ => Ok(folder),
+        }
+    }
+
+    /// Writes a file that is whole or not there.
+    pub(super) fn write(
+        &self,
+        name: &str,
+        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        write_whole(&self.path.join(name), self.replace, content).map_err(|e| failure(&e))
+    }
+}
+
+fn failure(error: &WriteError) -> Failure {
+    let file = match error {
+        WriteError::Exists(path) | WriteError::Io { path, .. } => path.display().to_string(),
+    };
+    Failure::new(Exit::File, error.to_string()).in_file(&file)
+}

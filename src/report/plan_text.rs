@@ -1,0 +1,81 @@
+//! A plan for people.
+
+use std::io::{self, Write};
+
+use super::{PlanFormat, Table, short, sparkline};
+use crate::planner::{ArmPlan, Plan};
+
+/// Width of the curves of the task errors [characters].
+const CURVE: usize = 64;
+
+/// What was done, a row per arm, the course of the errors, limits crossed and warnings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PlanText;
+
+impl PlanFormat for PlanText {
+    fn write(&self, plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
+        let names: Vec<&str> = plan.arms.iter().map(|arm| arm.name.as_str()).collect();
+        let arms = if names.len() == 1 { "arm" } else { "arms in synchrony" };
+        writeln!(
+            out,
+            "{} {arms} ({}): {} steps of {} s",
+            names.len(),
+            names.join(", "),
+            plan.steps,
+            plan.sigma
+        )?;
+        writeln!(out, "formula {}, h = {}, start {}", plan.formula, short(plan.h), plan.start)?;
+        match &plan.reason {
+            None => writeln!(out, "{}\n", plan.status.name())?,
+            Some(reason) => writeln!(out, "stopped, {}: {reason}\n", plan.status.name())?,
+        }
+        write!(out, "{}", errors(plan))?;
+        writeln!(out, "\ntask error over time, logarithmic:")?;
+        let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+        for arm in &plan.arms {
+            let norms: Vec<f64> = arm.errors.iter().map(nalgebra::Vector6::norm).collect();
+            writeln!(out, "  {:width$}  {}", arm.name, sparkline(&norms, CURVE))?;
+        }
+        for arm in &plan.arms {
+            write_violations(arm, out)?;
+        }
+        plan.warnings.iter().try_for_each(|warning| writeln!(out, "\nwarning: {warning}"))
+    }
+}
+
+fn errors(plan: &Plan) -> Table {
+    let mut table = Table::new([
+        "arm",
+        "joints",
+        "max error",
+        "second half",
+        "position [m]",
+        "orientation [rad]",
+        "limits",
+    ]);
+    for arm in &plan.arms {
+        let limits = match arm.violations.len() {
+            0 => "kept".to_owned(),
+            count => format!("{count} crossed"),
+        };
+        let errors = [arm.max_error, arm.max_error_steady, arm.max_position_error, arm.max_orientation_error];
+        let cells = [arm.name.clone(), arm.joints.len().to_string()];
+        table.row(cells.into_iter().chain(errors.map(|e| format!("{e:.2e}"))).chain([limits]));
+    }
+    table
+}
+
+fn write_violations(arm: &ArmPlan, out: &mut dyn Write) -> io::Result<()> {
+    arm.violations.iter().try_for_each(|v| {
+        writeln!(
+            out,
+            "\nlimit: arm {}, joint {}: {} {} at t = {} s, the limit is {}",
+            arm.name,
+            v.joint,
+            v.kind.name(),
+            short(v.value),
+            short(v.t),
+            short(v.limit)
+        )
+    })
+}

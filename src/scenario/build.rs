@@ -1,0 +1,297 @@
+//! From a scenario to a planner: robots and rows looked up, chains mounted, paths laid.
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Unit, Vector3};
+
+use super::document::read_text;
+use super::error::{ErrorKind, Place, ScenarioError};
+use super::key_path::KeyPath;
+use super::model::{ArmSpec, LawKind, Mount, Scenario, Start, TaskKind};
+use super::path_spec::{PathKind, PathSpec, Plane, TimeLawKind};
+use super::real::Real;
+use super::robots::RobotSource;
+use crate::formula::{Formula, FormulaTable, TableError};
+use crate::law::Pseudoinverse;
+use crate::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
+use crate::robot::{Chain, UrdfOptions};
+use crate::task::{self, Motion, Planar, PlanarCurve, TimeLaw, Turning};
+
+/// Returns `table` with the rows of a file after its own.
+///
+/// # Errors
+/// [`ScenarioError`] of kind [`ErrorKind::File`] where the file can not be read, of kind [`ErrorKind::Formula`], with
+/// its place, where a row is unreadable, contradicts what it declares, or has an id that is taken.
+pub fn with_formulas(table: &FormulaTable, file: &Path) -> Result<FormulaTable, ScenarioError> {
+    let text = read_text(file)?;
+    let more = FormulaTable::from_toml(&text).and_then(|more| table.extended_with(more));
+    more.map_err(|e| refused_rows(&e, file, &text))
+}
+
+/// Returns the refusal of a file of rows, with the place of the first defect.
+pub(crate) fn refused_rows(error: &TableError, file: &Path, text: &str) -> ScenarioError {
+    let label = file.display().to_string();
+    let Some(first) = error.defects().first() else {
+        return ScenarioError::new(ErrorKind::Formula, format!("{label}: {error}"));
+    };
+    let row = first.row.as_ref().map_or_else(String::new, |id| format!("formula \"{id}\": "));
+    let more = match error.defects().len() {
+        1 => String::new(),
+        count => format!(" ({count} problems; `kinstep formula check` lists them)"),
+    };
+    let place = Place::of_line(Some(label), text, first.place.line.max(1), first.place.column.max(1));
+    ScenarioError::new(ErrorKind::Formula, format!("{row}{}{more}", first.kind)).or_placed(Some(place))
+}
+
+impl Scenario {
+    /// Returns the built-in table with the rows of the scenario's own formula files, which are looked for from `folder`.
+    ///
+    /// # Errors
+    /// As [`with_formulas`].
+    pub fn formula_table(&self, folder: Option<&Path>) -> Result<FormulaTable, ScenarioError> {
+        self.formulas.iter().try_fold(FormulaTable::builtin().clone(), |table, file| {
+            let beside = folder.map_or_else(|| PathBuf::from(file), |folder| folder.join(file));
+            with_formulas(&table, &beside)
+        })
+    }
+
+    /// Returns a planner for the scenario with a row of `table`; robot files are looked for from `folder`, the place
+    /// of the scenario's own file.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] with the path of the key at fault: [`ScenarioText::placed`](super::ScenarioText::placed)
+    /// gives it a place.
+    pub fn planner(&self, table: &FormulaTable, folder: Option<&Path>) -> Result<Planner, ScenarioError> {
+        self.check()?;
+        let formula = self.formula_of(table)?;
+        let arms: Vec<Arm> =
+            self.arm.iter().map(|arm| self.build_arm(arm, folder)).collect::<Result<_, _>>()?;
+        self.builder(formula).arms(arms).build().map_err(|e| self.refused(&e))
+    }
+
+    /// Returns the row that the scenario names, if it may be run.
+    fn formula_of<'t>(&self, table: &'t FormulaTable) -> Result<&'t Formula, ScenarioError> {
+        let at = KeyPath::dotted("formula");
+        let formula = table.get(&self.formula).map_err(|e| ScenarioError::at(ErrorKind::Scenario, &at, e))?;
+        formula.runnable().map_err(|e| ScenarioError::at(ErrorKind::Formula, &at, e))?;
+        Ok(formula)
+    }
+
+    fn builder(&self, formula: &Formula) -> PlannerBuilder {
+        let builder = Planner::builder()
+            .formula(formula)
+            .sigma(self.sigma.value())
+            .duration(self.duration.value())
+            .allow_unstable(self.allow_unstable)
+            .start(self.start.map_or(planner::Start::Sufficient, Start::planned));
+        match (&self.law.h, &self.law.gain) {
+            (Some(h), _) => builder.h(h.value()),
+            (None, Some(gain)) => builder.gain(gain.value()),
+            (None, None) => builder,
+        }
+    }
+
+    fn build_arm(&self, spec: &ArmSpec, folder: Option<&Path>) -> Result<Arm, ScenarioError> {
+        let at = KeyPath::dotted("arm").key(&spec.name);
+        let chain = chain(&at, spec, folder)?.mounted(&spec.mount.pose());
+        let q0: Vec<f64> = spec.q0.iter().map(Real::value).collect();
+        check_initial(&at, &chain, &q0)?;
+        let start = chain.forward(&q0, &mut chain.scratch()).pose();
+        let motion = spec.path.motion(&start, self.duration.value());
+        let arm = Arm::new(spec.name.clone(), chain, q0, spec.task.planned(), motion);
+        Ok(match (self.law.kind, &self.law.threshold) {
+            (LawKind::Pseudoinverse, None) => arm,
+            (LawKind::Pseudoinverse, Some(t)) => arm.with_law(Pseudoinverse::new().with_threshold(t.value())),
+        })
+    }
+
+    /// Returns the planner's refusal with the key that it is about.
+    fn refused(&self, error: &PlannerError) -> ScenarioError {
+        let of_arm = |arm: &str, key: &str| KeyPath::dotted("arm").key(arm).key(key);
+        let feedback = if self.law.gain.is_some() { "law.gain" } else { "law.h" };
+        let (kind, path) = match error {
+            PlannerError::Duration { .. } => (ErrorKind::Scenario, KeyPath::dotted("duration")),
+            PlannerError::Sigma { .. } | PlannerError::TooManySteps { .. } => {
+                (ErrorKind::Scenario, KeyPath::dotted("sigma"))
+            }
+            PlannerError::Feedback { .. } | PlannerError::StepSizeOutsideRange { .. } => {
+                (ErrorKind::Scenario, KeyPath::dotted(feedback))
+            }
+            PlannerError::InitialLength { arm, .. }
+            | PlannerError::InitialNonFinite { arm, .. }
+            | PlannerError::InitialOutsideLimits { arm, .. } => (ErrorKind::Scenario, of_arm(arm, "q0")),
+            PlannerError::PathStart { arm, .. } => (ErrorKind::Scenario, of_arm(arm, "path")),
+            PlannerError::NoJoints { arm, .. } => (ErrorKind::Robot, of_arm(arm, "tip")),
+            PlannerError::Integrate(_) => (ErrorKind::Formula, KeyPath::dotted("formula")),
+            _ => (ErrorKind::Scenario, KeyPath::default()),
+        };
+        if path == KeyPath::default() {
+            return ScenarioError::new(kind, error.to_string());
+        }
+        ScenarioError::at(kind, &path, error)
+    }
+}
+
+fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
+    let source = RobotSource::find(&spec.robot, folder)
+        .map_err(|e| ScenarioError::at(e.kind, &at.key("robot"), e.message))?;
+    let robot = source.read(&UrdfOptions::default()).map_err(|e| {
+        let refusal = source.refusal(&e);
+        let message = format!("{}: {}", at.key("robot"), refusal.message);
+        let path = Some(at.key("robot")).filter(|_| refusal.kind == ErrorKind::File);
+        ScenarioError { message, path, ..refusal }
+    })?;
+    robot.chain(&spec.base, &spec.tip).map_err(|e| {
+        let key = if robot.link(&spec.base).is_none() { "base" } else { "tip" };
+        ScenarioError::at(ErrorKind::Robot, &at.key(key), format!("robot {}: {e}", source.label()))
+    })
+}
+
+/// The number of joints and their limits, checked where kinematics needs them first.
+fn check_initial(at: &KeyPath, chain: &Chain, q0: &[f64]) -> Result<(), ScenarioError> {
+    let at = at.key("q0");
+    if q0.len() != chain.dof() {
+        let names: Vec<&str> = chain.joints().iter().map(|joint| joint.name.as_str()).collect();
+        let problem = format!("expected {} positions ({}), got {}", chain.dof(), names.join(", "), q0.len());
+        return Err(ScenarioError::at(ErrorKind::Scenario, &at, problem));
+    }
+    if let Some(outside) = chain.limit_violations(q0).next() {
+        let problem = format!(
+            "joint `{}` would start at {}, outside its limits [{}, {}]",
+            outside.joint, outside.value, outside.lower, outside.upper
+        );
+        return Err(ScenarioError::at(ErrorKind::Scenario, &at.index(outside.index), problem));
+    }
+    Ok(())
+}
+
+impl Start {
+    fn planned(self) -> planner::Start {
+        match self {
+            Self::Paper => planner::Start::Paper,
+            Self::Ramp => planner::Start::Ramp,
+            Self::Rk4 => planner::Start::Rk4,
+            Self::Rk8 => planner::Start::Rk8,
+        }
+    }
+}
+
+impl TaskKind {
+    fn planned(self) -> task::TaskKind {
+        match self {
+            Self::PositionXy => task::TaskKind::PositionXy,
+            Self::Position => task::TaskKind::Position,
+            Self::Pose => task::TaskKind::Pose,
+        }
+    }
+}
+
+impl Plane {
+    fn planned(self) -> task::Plane {
+        match self {
+            Self::Xy => task::Plane::Xy,
+            Self::Yz => task::Plane::Yz,
+            Self::Zx => task::Plane::Zx,
+        }
+    }
+}
+
+impl TimeLawKind {
+    fn planned(self) -> Box<dyn TimeLaw> {
+        match self {
+            Self::Sin2 => Box::new(task::Sin2),
+            Self::Sin2sin2 => Box::new(task::Sin2Sin2),
+            Self::Linear => Box::new(task::Linear),
+            Self::Quintic => Box::new(task::Quintic),
+        }
+    }
+}
+
+impl Mount {
+    /// Returns the pose of the arm's base in the world.
+    pub fn pose(&self) -> IsometryMatrix3<f64> {
+        let [roll, pitch, yaw] = self.rpy.each_ref().map(Real::value);
+        let rotation = Rotation3::from_euler_angles(roll, pitch, yaw);
+        IsometryMatrix3::from_parts(Translation3::from(vector(&self.xyz)), rotation)
+    }
+}
+
+/// Two numbers are x and y.
+fn vector(numbers: &[Real]) -> Vector3<f64> {
+    let number = |axis: usize| numbers.get(axis).map_or(0.0, Real::value);
+    Vector3::new(number(0), number(1), number(2))
+}
+
+fn value_or(number: Option<&Real>, default: f64) -> f64 {
+    number.map_or(default, Real::value)
+}
+
+impl PathSpec {
+    /// Returns the motion along the path of a tip that stands at `start`.
+    fn motion(&self, start: &IsometryMatrix3<f64>, duration: f64) -> Motion {
+        let time_law = self.time_law.unwrap_or(TimeLawKind::Sin2).planned();
+        let path = self.path(start);
+        match &self.center {
+            Some(center) => {
+                let mut center = vector(center);
+                if self.center.as_ref().is_some_and(|given| given.len() == 2) {
+                    center.z = start.translation.z;
+                }
+                Motion::centered(path, time_law, duration, center, start.rotation)
+            }
+            None => Motion::from_pose(path, time_law, duration, start),
+        }
+    }
+
+    fn path(&self, start: &IsometryMatrix3<f64>) -> Box<dyn task::Path> {
+        let path: Box<dyn task::Path> = match self.kind {
+            PathKind::Line => Box::new(task::Line { displacement: self.line_displacement(start) }),
+            _ => Box::new(Planar::new(
+                self.curve(),
+                self.plane.unwrap_or(Plane::Xy).planned(),
+                value_or(self.rotation.as_ref(), 0.0),
+                value_or(self.from.as_ref(), 0.0),
+                value_or(self.sweep.as_ref(), std::f64::consts::TAU),
+            )),
+        };
+        match &self.turn {
+            None => path,
+            Some(turn) => {
+                Box::new(Turning::new(path, Unit::new_normalize(vector(&turn.axis)), turn.angle.value()))
+            }
+        }
+    }
+
+    fn line_displacement(&self, start: &IsometryMatrix3<f64>) -> Vector3<f64> {
+        match (&self.displacement, &self.to) {
+            (Some(displacement), _) => vector(displacement),
+            (None, Some(to)) => {
+                let mut displacement = vector(to) - start.translation.vector;
+                if to.len() == 2 {
+                    displacement.z = 0.0;
+                }
+                displacement
+            }
+            (None, None) => Vector3::zeros(),
+        }
+    }
+
+    /// The parameters that the kind needs have been checked to be there.
+    fn curve(&self) -> Box<dyn PlanarCurve> {
+        let radius = value_or(self.radius.as_ref(), 0.0);
+        let pair = |pair: &Option<[Real; 2]>| {
+            pair.as_ref().map_or([0.0; 2], |pair| pair.each_ref().map(Real::value))
+        };
+        match self.kind {
+            PathKind::Tricuspid => Box::new(task::Tricuspid { radius }),
+            PathKind::Astroid => Box::new(task::Astroid { radius }),
+            PathKind::Rose => Box::new(task::Rose { radius, petals: value_or(self.petals.as_ref(), 0.0) }),
+            PathKind::Lissajous => Box::new(task::Lissajous {
+                amplitudes: pair(&self.amplitudes),
+                frequencies: pair(&self.frequencies),
+                phase: value_or(self.phase.as_ref(), 0.0),
+            }),
+            PathKind::Circle | PathKind::Line => Box::new(task::Circle { radius }),
+        }
+    }
+}
