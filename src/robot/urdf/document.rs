@@ -93,7 +93,7 @@ fn report_mending(outline: &Outline<'_>, report: &mut Report<'_>) {
     }
     for (offset, prefix) in outline.undeclared() {
         let cause = format!(
-            "the namespace prefix {} is declared nowhere (`xmlns:{prefix}`); its elements are ignored",
+            "the namespace prefix {} is declared nowhere (`xmlns:{prefix}`); what carries it is ignored",
             quote(prefix)
         );
         report.warning(offset - prefix.len(), cause);
@@ -282,6 +282,7 @@ fn note_ignored(root: Node<'_, '_>, report: &mut Report<'_>) {
             continue;
         }
         misspelt_element(child, name, report);
+        let name = report.written_name(element::offset(child) + 1);
         match counts.iter().position(|(known, ..)| *known == name) {
             Some(index) => counts[index].1 += 1,
             None if counts.len() < 20 => counts.push((name, 1, element::offset(child))),

@@ -73,12 +73,12 @@ pub(super) fn check_attributes(
     let mut errors = Vec::new();
     for attribute in node.attributes().filter(|attribute| attribute.namespace().is_none()) {
         let name = attribute.name();
-        if known.attributes.contains(&name) {
+        let place = attribute.range().start;
+        if known.attributes.contains(&name) || report.written_name(place).contains(':') {
             continue;
         }
         let mut absent = known.attributes.iter().filter(|known| self::attribute(node, known).is_none());
         let meant = absent.find(|known| is_misspelling(name, known));
-        let place = attribute.range().start;
         let cause = format!("`<{}>` has no attribute {}", known.element, quote(name));
         match meant {
             Some(meant) => errors.push((place, format!("{cause}; did you mean `{meant}`?"))),

@@ -8,6 +8,7 @@ const SUGGESTIONS: usize = 20;
 
 /// Collects findings by byte offset.
 pub(super) struct Report<'a> {
+    text: &'a str,
     places: Places<'a>,
     found: Vec<(usize, Severity, String)>,
     suggestions_left: usize,
@@ -15,7 +16,7 @@ pub(super) struct Report<'a> {
 
 impl<'a> Report<'a> {
     pub(super) fn new(text: &'a str) -> Report<'a> {
-        Report { places: Places::new(text), found: Vec::new(), suggestions_left: SUGGESTIONS }
+        Report { text, places: Places::new(text), found: Vec::new(), suggestions_left: SUGGESTIONS }
     }
 
     pub(super) fn error(&mut self, offset: usize, message: impl Into<String>) {
@@ -33,6 +34,13 @@ impl<'a> Report<'a> {
     /// The line of an offset, to be named in a message.
     pub(super) fn line(&self, offset: usize) -> usize {
         self.places.line(offset)
+    }
+
+    /// The name, with its prefix, that the file writes at an offset.
+    pub(super) fn written_name(&self, offset: usize) -> &'a str {
+        let rest = self.text.get(offset..).unwrap_or_default();
+        let ends = |c: char| c.is_ascii_whitespace() || matches!(c, '=' | '/' | '>');
+        rest.split(ends).next().unwrap_or_default()
     }
 
     pub(super) fn defect(&self, offset: usize, reason: String) -> Defect {
