@@ -200,6 +200,7 @@ fn positions_outside_the_limits_are_named() {
     let chain = robot.chain("wrist", "left_tip").unwrap();
     assert!(chain.within_limits(&[100.0, 0.02, 0.0]));
     assert!(!chain.within_limits(&[0.0, 0.02]));
+    assert!(!chain.within_limits(&[f64::INFINITY, 0.02, 0.0]), "unlimited is not infinite");
     let outside: Vec<_> = chain.limit_violations(&[0.0, -0.01, f64::NAN]).collect();
     assert_eq!(outside.iter().map(|one| one.joint.as_str()).collect::<Vec<_>>(), ["left_slide", "left_pad"]);
 }

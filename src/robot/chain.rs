@@ -24,7 +24,7 @@ pub struct LimitViolation {
     pub index: usize,
     /// The joint's name.
     pub joint: String,
-    /// The position [rad] or [m].
+    /// The position \[rad\] or \[m\].
     pub value: f64,
     /// The smallest allowed.
     pub lower: f64,
@@ -90,7 +90,7 @@ impl Chain {
         &self.tip
     }
 
-    /// Returns an upper bound [m] of the distance from the first moving joint to the tip: the lengths of all
+    /// Returns an upper bound \[m\] of the distance from the first moving joint to the tip: the lengths of all
     /// constant translations after that joint plus the travel of the prismatic joints within their limits.
     /// Infinite when a prismatic joint has no limits.
     pub fn reach(&self) -> f64 {
@@ -111,7 +111,7 @@ impl Chain {
         ChainScratch::with_length(self.segments.len())
     }
 
-    /// The smallest and largest position of each joint [rad] or [m], in the order of `q`.
+    /// The smallest and largest position of each joint \[rad\] or \[m\], in the order of `q`.
     pub fn position_limits(&self) -> impl Iterator<Item = (f64, f64)> {
         self.joints.iter().map(|joint| (joint.limits.lower, joint.limits.upper))
     }

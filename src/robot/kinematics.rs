@@ -30,9 +30,9 @@ pub(super) struct Segment {
 /// How a segment moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Motion {
-    /// About z [rad].
+    /// About z \[rad\].
     Turn,
-    /// Along z [m].
+    /// Along z \[m\].
     Shift,
 }
 
@@ -138,7 +138,7 @@ impl ChainScratch {
 }
 
 impl Chain {
-    /// Runs the kinematics at joint positions `q` [rad] or [m] (one per [`Chain::joints`]) and returns the
+    /// Runs the kinematics at joint positions `q` \[rad\] or \[m\] (one per [`Chain::joints`]) and returns the
     /// chain posed there. Allocates nothing, unless `scratch` was made for a chain with fewer moving axes.
     ///
     /// # Panics
@@ -176,7 +176,7 @@ impl Posed<'_> {
         self.scratch.tip.isometry()
     }
 
-    /// Returns the tip's position in the base [m].
+    /// Returns the tip's position in the base \[m\].
     pub fn position(&self) -> Vector3<f64> {
         vector(self.scratch.tip.p)
     }

@@ -14,11 +14,11 @@ use super::{Chain, Diagnostic, ReadError, UrdfError, UrdfOptions};
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum JointKind {
-    /// Turns about its axis between limits [rad].
+    /// Turns about its axis between limits \[rad\].
     Revolute,
-    /// Turns about its axis without end; the angle is one unwrapped number [rad].
+    /// Turns about its axis without end; the angle is one unwrapped number \[rad\].
     Continuous,
-    /// Slides along its axis [m].
+    /// Slides along its axis \[m\].
     Prismatic,
     /// Does not move.
     Fixed,
@@ -80,9 +80,9 @@ impl fmt::Display for JointKind {
 /// The range and speed a joint allows. What the file does not say is infinite: unknown, and not checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Smallest position [rad] or [m].
+    /// Smallest position \[rad\] or \[m\].
     pub lower: f64,
-    /// Largest position [rad] or [m].
+    /// Largest position \[rad\] or \[m\].
     pub upper: f64,
     /// Largest speed in either direction [rad/s] or [m/s].
     pub velocity: f64,
@@ -93,9 +93,9 @@ impl Limits {
     pub const UNLIMITED: Limits =
         Limits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: f64::INFINITY };
 
-    /// Whether `position` is inside the range; a NaN is not.
+    /// Whether `position` is inside the range; what is not finite never is.
     pub fn contains(&self, position: f64) -> bool {
-        self.lower <= position && position <= self.upper
+        position.is_finite() && self.lower <= position && position <= self.upper
     }
 }
 
@@ -106,7 +106,7 @@ pub struct Mimic {
     pub driver: usize,
     /// Ratio of the positions (and of the velocities), not zero.
     pub multiplier: f64,
-    /// Position at driver position zero [rad] or [m].
+    /// Position at driver position zero \[rad\] or \[m\].
     pub offset: f64,
 }
 
