@@ -178,6 +178,7 @@ impl PlannerBuilder {
             formula: formula.id().to_owned(),
             sigma,
             h,
+            is_stable: formula.feedback_range().contains(h),
             start: starter.name(),
             steps,
             warnings,

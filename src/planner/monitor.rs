@@ -64,7 +64,6 @@ pub(super) struct Monitor {
     previous: Vec<f64>,
     pub(super) max_error: f64,
     pub(super) max_error_component: f64,
-    pub(super) max_error_steady: f64,
     pub(super) max_position_error: f64,
     pub(super) max_orientation_error: f64,
     pub(super) damped_samples: usize,
@@ -80,7 +79,6 @@ impl Monitor {
             previous: vec![f64::NAN; joints],
             max_error: 0.0,
             max_error_component: 0.0,
-            max_error_steady: 0.0,
             max_position_error: 0.0,
             max_orientation_error: 0.0,
             damped_samples: 0,
@@ -89,12 +87,9 @@ impl Monitor {
         }
     }
 
-    pub(super) fn observe_error(&mut self, error: &Vector6<f64>, steady: bool) {
+    pub(super) fn observe_error(&mut self, error: &Vector6<f64>) {
         let norm = error.norm();
         self.max_error = self.max_error.max(norm);
-        if steady {
-            self.max_error_steady = self.max_error_steady.max(norm);
-        }
         self.max_error_component = self.max_error_component.max(error.amax());
         self.max_position_error = self.max_position_error.max(error.fixed_rows::<3>(0).norm());
         self.max_orientation_error = self.max_orientation_error.max(error.fixed_rows::<3>(3).norm());

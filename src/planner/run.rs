@@ -3,12 +3,15 @@ use super::field::{ArmRuntime, SynchronousField};
 use super::monitor::Monitor;
 use super::{ArmPlan, Plan, PlanStatus, PlannerBuilder};
 use crate::integrate::{Multistep, Status};
+use crate::task::Reference;
 use nalgebra::Vector6;
 
 /// The task error at which a run is stopped, as a fraction of the chain's reach.
 const LOST_FRACTION_OF_REACH: f64 = 0.1;
 /// The orientation error at which a run is stopped [rad].
 const LOST_ORIENTATION: f64 = 1.0;
+/// Below this fraction of those bounds an arm counts as back on its path after a singularity.
+const RECOVERED: f64 = 0.1;
 
 /// What a plan says of itself.
 #[derive(Clone, Debug)]
@@ -16,6 +19,8 @@ pub(super) struct Description {
     pub(super) formula: String,
     pub(super) sigma: f64,
     pub(super) h: f64,
+    /// Whether `h` lies in the formula's feedback range.
+    pub(super) is_stable: bool,
     pub(super) start: &'static str,
     pub(super) steps: usize,
     pub(super) warnings: Vec<String>,
@@ -68,7 +73,7 @@ pub struct Planner {
     stepper: Multistep<f64>,
     field: SynchronousField,
     monitors: Vec<Monitor>,
-    /// Whether each arm was near a singularity one sample ago.
+    /// Whether each arm has met a singularity that it has not recovered from, one sample ago.
     was_singular: Vec<bool>,
     stop: Option<Stop>,
 }
@@ -203,7 +208,7 @@ impl Planner {
         for ((plan, monitor), runtime) in arms.iter_mut().zip(&self.monitors).zip(&self.field.arms) {
             plan.max_error = monitor.max_error;
             plan.max_error_component = monitor.max_error_component;
-            plan.max_error_steady = monitor.max_error_steady;
+            plan.max_error_steady = steady_maximum(&plan.errors);
             plan.max_position_error = monitor.max_position_error;
             plan.max_orientation_error = monitor.max_orientation_error;
             plan.smallest_singular_value = (monitor.smallest_singular_value, monitor.smallest_at);
@@ -222,12 +227,11 @@ impl Planner {
     /// Observes the present sample: errors, limits, conditioning.
     fn watch(&mut self) {
         let (t, sigma) = (self.stepper.time(), self.description.sigma);
-        let steady = 2 * self.stepper.index() >= self.description.steps;
         let mut from = 0;
         for (runtime, monitor) in self.field.arms.iter().zip(&mut self.monitors) {
             let to = from + runtime.arm.chain.dof();
             let (q, velocity) = (&self.stepper.state()[from..to], &self.stepper.derivative()[from..to]);
-            monitor.observe_error(&runtime.error, steady);
+            monitor.observe_error(&runtime.error);
             monitor.observe_joints(&runtime.arm.chain, t, sigma, q, velocity);
             monitor.observe_conditioning(&runtime.resolution, t);
             from = to;
@@ -253,40 +257,42 @@ impl Planner {
     }
 
     /// Stops the run when an arm has lost its path, and finds out why.
+    ///
+    /// A loop outside its range diverges unless rank is missing right now. Inside the range the loop is not to blame:
+    /// what counts is whether the arm met a singularity since it was last on its path, and whether the point it should
+    /// go to can be reached.
     fn check_lost(&mut self) {
         for i in 0..self.field.arms.len() {
             let runtime = &self.field.arms[i];
             let singular = is_singular(runtime);
-            if is_lost(runtime) {
-                self.stop = Some(if singular || self.was_singular[i] {
-                    self.singular_or_unreachable(i)
-                } else {
-                    diverged(runtime, self.time())
-                });
+            let lost_rank = singular || self.was_singular[i];
+            if !is_within(runtime, 1.0) {
+                self.stop = Some(self.diagnose(i, lost_rank));
                 return;
             }
-            self.was_singular[i] = singular;
+            let remembers = self.description.is_stable && !is_within(runtime, RECOVERED);
+            self.was_singular[i] = singular || (remembers && self.was_singular[i]);
         }
     }
 
-    fn singular_or_unreachable(&self, i: usize) -> Stop {
+    fn diagnose(&self, i: usize, lost_rank: bool) -> Stop {
         let (runtime, t) = (&self.field.arms[i], self.time());
+        if !lost_rank && !self.description.is_stable {
+            return diverged(
+                runtime,
+                t,
+                "the closed loop is not stable at this h: choose h inside the formula's range",
+            );
+        }
         let reference = runtime.arm.motion.at(t);
         let distance = diagnosis::smallest_distance(runtime, self.arm(i).positions, &reference);
-        let (name, error, p) = (&runtime.arm.name, runtime.error.norm(), reference.position);
-        let place = format!("({:.4}, {:.4}, {:.4}) m", p.x, p.y, p.z);
-        if diagnosis::is_reached(distance) {
-            let reason = format!(
-                "arm `{name}` met a singularity and lost its path at t = {t:.6} s with a task error of {error:.3e}: the smallest singular value of its Jacobian is {:.3e}, below the threshold {:.3e}; the path's point {place} can be reached, from another q0 for instance",
-                runtime.resolution.smallest_singular_value,
-                runtime.arm.law.threshold()
-            );
-            return Stop { status: PlanStatus::Singular, reason };
+        if !diagnosis::is_reached(distance) {
+            return unreachable(runtime, t, &reference, distance);
         }
-        let reason = format!(
-            "arm `{name}` can not reach its path at t = {t:.6} s: the nearest it gets to {place} is a task error of {distance:.3e} (the run stopped at {error:.3e}); move the path nearer or make it smaller"
-        );
-        Stop { status: PlanStatus::Unreachable, reason }
+        if lost_rank {
+            return singular(runtime, t, &reference);
+        }
+        diverged(runtime, t, "sigma is too coarse for this path: choose a smaller one, or a longer duration")
     }
 }
 
@@ -294,27 +300,59 @@ fn is_singular(runtime: &ArmRuntime) -> bool {
     runtime.resolution.smallest_singular_value < runtime.arm.law.threshold()
 }
 
-fn is_lost(runtime: &ArmRuntime) -> bool {
+/// Whether the task error lies within this fraction of the bounds at which a run is stopped; false for NaN.
+fn is_within(runtime: &ArmRuntime, fraction: f64) -> bool {
     let position = runtime.error.fixed_rows::<3>(0).norm();
     let orientation = runtime.error.fixed_rows::<3>(3).norm();
     let reach = runtime.arm.chain.reach();
     let bound = LOST_FRACTION_OF_REACH * if reach.is_finite() { reach } else { 1.0 };
-    // Negated so that NaN counts as lost.
-    !(position <= bound && orientation <= LOST_ORIENTATION)
+    position <= fraction * bound && orientation <= fraction * LOST_ORIENTATION
 }
 
-fn diverged(runtime: &ArmRuntime, t: f64) -> Stop {
+fn diverged(runtime: &ArmRuntime, t: f64, remedy: &str) -> Stop {
     let reason = format!(
-        "arm `{}` diverged: at t = {t:.6} s its task error is {:.3e} although it is far from singular, so the closed loop is not stable at this h; choose h inside the formula's feedback range, or a smaller sigma",
+        "arm `{}` diverged: at t = {t:.6} s its task error is {:.3e} although it is far from singular; {remedy}",
         runtime.arm.name,
         runtime.error.norm()
     );
     Stop { status: PlanStatus::Diverged, reason }
 }
 
+fn singular(runtime: &ArmRuntime, t: f64, reference: &Reference) -> Stop {
+    let reason = format!(
+        "arm `{}` met a singularity and lost its path at t = {t:.6} s with a task error of {:.3e}: the smallest singular value of its Jacobian is {:.3e}, with a threshold of {:.3e}; the path's point {} can be reached, from another q0 for instance",
+        runtime.arm.name,
+        runtime.error.norm(),
+        runtime.resolution.smallest_singular_value,
+        runtime.arm.law.threshold(),
+        place(reference)
+    );
+    Stop { status: PlanStatus::Singular, reason }
+}
+
+fn unreachable(runtime: &ArmRuntime, t: f64, reference: &Reference, distance: f64) -> Stop {
+    let reason = format!(
+        "arm `{}` can not reach its path at t = {t:.6} s: the nearest it gets to {} is a task error of {distance:.3e} (the run stopped at {:.3e}); move the path nearer or make it smaller",
+        runtime.arm.name,
+        place(reference),
+        runtime.error.norm()
+    );
+    Stop { status: PlanStatus::Unreachable, reason }
+}
+
+fn place(reference: &Reference) -> String {
+    let p = reference.position;
+    format!("({:.4}, {:.4}, {:.4}) m", p.x, p.y, p.z)
+}
+
+/// The largest norm over the second half of the samples.
+fn steady_maximum(errors: &[Vector6<f64>]) -> f64 {
+    errors[errors.len() / 2..].iter().map(Vector6::norm).fold(0.0, f64::max)
+}
+
 fn damping_warning(plan: &ArmPlan, threshold: f64) -> Option<String> {
     let (smallest, at) = plan.smallest_singular_value;
-    (plan.damped_samples > 0).then(|| {
+    (plan.damped_samples > 1).then(|| {
         format!(
             "arm `{}` came near a singularity: damped least squares acted on {} samples; the smallest singular value was {smallest:.3e} at t = {at:.6} s (threshold {threshold:.3e})",
             plan.name, plan.damped_samples
