@@ -1,5 +1,7 @@
 //! The paper's experiments through the library, against figures of an independent simulation.
 
+#![allow(clippy::unwrap_used)]
+
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
 use kinstep::planner::{Arm, Plan, PlanStatus, PlannerBuilder, Start};
 use kinstep::robot::embedded;

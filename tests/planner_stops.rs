@@ -1,5 +1,7 @@
 //! How runs end when they can not go on, and what keeps them from starting.
 
+#![allow(clippy::unwrap_used)]
+
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
 use kinstep::planner::{Arm, LimitKind, Plan, PlanStatus, PlannerError};
 use kinstep::robot::{Chain, Robot, embedded};
@@ -55,7 +57,8 @@ fn an_arm_that_passes_a_singularity_is_damped_and_says_so() {
     let chain = Robot::from_urdf(&two_links("-7 7")).unwrap().chain("base", "tip").unwrap();
     // The line passes through the base, where turning the shoulder does not move the tip.
     let tip = chain.forward(&[0.2, 2.2], &mut chain.scratch()).position();
-    let plan = run(arm(chain, &[0.2, 2.2], line(-2.0 * tip.x, -2.0 * tip.y), Sin2));
+    let arm = arm(chain, &[0.2, 2.2], line(-2.0 * tip.x, -2.0 * tip.y), Sin2);
+    let plan = scheme::dtsmp([arm], 0.0005, 0.4).duration(DURATION).build().unwrap().run();
     assert_eq!(plan.status, PlanStatus::Completed, "{:?}", plan.reason);
     let arm = &plan.arms[0];
     assert!(arm.damped_samples > 1 && arm.smallest_singular_value.0 < 2e-3);
