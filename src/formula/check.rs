@@ -5,9 +5,9 @@ use num_traits::Zero;
 use crate::math::Rational;
 
 use super::analysis::Analysis;
-use super::error::{Contradiction, Defect, DefectKind};
+use super::error::{Contradiction, Defect, DefectKind, Place};
 use super::formula::Formula;
-use super::row::Row;
+use super::row::{Places, Row};
 
 /// A row beside what its numbers say.
 #[derive(Debug, Clone)]
@@ -52,12 +52,23 @@ impl CheckedRow {
         {
             return Ok(formula);
         }
-        let defect = |contradiction| Defect {
-            place: self.row.place,
+        let defect = |contradiction: Contradiction| Defect {
+            place: place_of(&contradiction, &self.row.places),
             row: Some(self.row.id.clone()),
             kind: DefectKind::Contradicted(Box::new(contradiction)),
         };
         Err(self.contradictions.into_iter().map(defect).collect())
+    }
+}
+
+/// The part of the row that a contradiction is about.
+fn place_of(contradiction: &Contradiction, places: &Places) -> Place {
+    match contradiction {
+        Contradiction::Order { .. } | Contradiction::BeyondDahlquistBarrier { .. } => places.order,
+        Contradiction::ErrorConstant { .. } => places.error_constant,
+        Contradiction::ZeroStability { .. } => places.zero_stable,
+        Contradiction::NoFeedback => places.gamma,
+        _ => places.coefficients,
     }
 }
 
@@ -74,7 +85,7 @@ fn contradictions(row: &Row, analysis: &Analysis) -> Vec<Contradiction> {
         found.push(Contradiction::ErrorConstant { declared, computed });
     }
     if let Some(declared) = declared.zero_stable.filter(|declared| *declared != analysis.is_zero_stable()) {
-        let moduli = analysis.root_moduli().iter().take(3).map(|modulus| format!("{modulus:.9}")).collect();
+        let moduli = analysis.root_moduli().iter().take(3).map(|modulus| rounded(*modulus)).collect();
         found.push(Contradiction::ZeroStability { declared, computed: analysis.root_condition(), moduli });
     }
     found
@@ -117,4 +128,10 @@ fn beyond_barrier(order: usize, zero_stable: Option<bool>, analysis: &Analysis) 
         kind,
         barrier,
     })
+}
+
+/// A modulus to nine places, without idle zeros.
+fn rounded(modulus: f64) -> String {
+    let text = format!("{modulus:.9}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

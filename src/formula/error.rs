@@ -38,7 +38,7 @@ pub enum DefectKind {
     #[error("there is no formula in this file; a row begins with a line [[formula]]")]
     NoRows,
     /// A key that no row has.
-    #[error("unknown key \"{key}\"{}; {place} may have: {known}", did_you_mean(nearest.as_deref()))]
+    #[error("unknown key \"{key}\"{}; the keys of {place} are: {known}", did_you_mean(nearest.as_deref()))]
     UnknownKey {
         /// The key as written.
         key: String,
@@ -98,7 +98,7 @@ pub enum DefectKind {
     },
     /// Lists of different lengths.
     #[error(
-        "\"{key}\" has {found} coefficients, but \"alpha\" has {expected}; every list runs from the new sample to \
+        "\"{key}\" has the length {found}, but \"alpha\" has the length {expected}; every list runs from the new sample to \
          the oldest, so fill up with \"0\""
     )]
     UnequalLengths {
@@ -111,7 +111,7 @@ pub enum DefectKind {
     },
     /// Not even one step.
     #[error(
-        "\"{key}\" has {found} coefficients; the shortest formula has two, for the new state and the one before"
+        "\"{key}\" has the length {found}; the shortest formula has two coefficients, for the new state and the one before"
     )]
     TooFewCoefficients {
         /// The list.
@@ -196,8 +196,8 @@ impl DefectKind {
 pub enum Contradiction {
     /// rho(1) differs from zero.
     #[error(
-        "the row is inconsistent: its coefficients of the states sum to {residual} where they must sum to 0, so it \
-         does not even hold a constant"
+        "the row is inconsistent: its coefficients of the states, divided by the first, sum to {residual} where they \
+         must sum to 0, so it does not even hold a constant"
     )]
     WeightsDoNotSumToZero {
         /// E_0.
@@ -205,8 +205,8 @@ pub enum Contradiction {
     },
     /// The first moment of alpha differs from beta(1).
     #[error(
-        "the row is inconsistent: the first moment of its states is {moment} where the weights of f sum to {weight}, so it \
-         follows a straight line at the wrong speed (they must agree)"
+        "the row is inconsistent: the first moment of its states is {moment} where the weights of f sum to {weight} (for a \
+         first coefficient of 1), so it follows a straight line at the wrong speed; the two must agree"
     )]
     FirstMomentDiffers {
         /// sum_j alpha_j (1 - j), for a leading coefficient of 1.
@@ -284,7 +284,7 @@ fn moduli_text(moduli: &[String]) -> String {
 }
 
 pub(crate) fn did_you_mean(nearest: Option<&str>) -> String {
-    nearest.map(|name| format!(", did you mean \"{name}\"?")).unwrap_or_default()
+    nearest.map(|name| format!(" (did you mean \"{name}\"?)")).unwrap_or_default()
 }
 
 /// Returns the known name closest to a misspelt one, if one is close enough to be meant.

@@ -2,7 +2,7 @@
 
 use num_traits::Zero;
 
-use crate::math::{Fixed, Rational, Real, is_schur, rational_from_f64};
+use crate::math::{Rational, Real, Wide, is_schur, rational_from_f64};
 
 use super::analysis::Weights;
 use super::feedback_range::ClosedLoop;
@@ -46,20 +46,20 @@ pub(crate) fn noise_gain(weights: &Weights, closed_loop: &ClosedLoop, h: f64) ->
 
 /// The l2 norm of the impulse response of numerator(z)/denominator(z), both highest power first and of one length.
 ///
-/// The denominator must have all roots inside the circle. Works in 192 binary places, so the double is good to its last digits
+/// The denominator must have all roots inside the circle. Works in 192 significant bits, so the double is good to its last digits
 /// unless a root is within about 1e-20 of the circle.
 fn h2_norm(numerator: &[Rational], denominator: &[Rational]) -> f64 {
-    let fixed = |row: &[Rational]| -> Vec<Fixed> {
-        row.iter().map(|c| Fixed::from_rational(&(c / &denominator[0]))).collect()
+    let fixed = |row: &[Rational]| -> Vec<Wide> {
+        row.iter().map(|c| Wide::from_rational(&(c / &denominator[0]))).collect()
     };
     let (mut a, mut b) = (fixed(denominator), fixed(numerator));
-    let mut sum = Fixed::from_f64(0.0);
+    let mut sum = Wide::from_f64(0.0);
     while let (Some(a_last), Some(b_last)) = (a.last().cloned(), b.last().cloned()) {
         let head = a[0].clone();
         let (alpha, beta) = (a_last / head.clone(), b_last.clone() / head);
         sum = sum + b_last * beta.clone();
-        let mirrored: Vec<Fixed> = a.iter().rev().cloned().collect();
-        let reduce = |row: &[Fixed], factor: &Fixed| -> Vec<Fixed> {
+        let mirrored: Vec<Wide> = a.iter().rev().cloned().collect();
+        let reduce = |row: &[Wide], factor: &Wide| -> Vec<Wide> {
             let kept = row.len() - 1;
             row.iter()
                 .zip(&mirrored)

@@ -1,13 +1,13 @@
 //! How fast the closed loop forgets: its spectral radius r(h), and the h for which it is least.
 //!
 //! r(h) has corners and vertical tangents, where doubles keep half their digits; the figures here are worked out in
-//! 192 binary places where that matters.
+//! twice as many where that matters.
 
-use num_traits::{One, Signed};
+use num_traits::Signed;
 
 use crate::math::{
-    Complex, Fixed, Polynomial, Rational, Real, polish, rational_from_f64, rational_to_f64, root_moduli,
-    simple_roots, starting_points,
+    Complex, DoubleDouble, Polynomial, Rational, Real, polish, rational_from_f64, rational_to_f64,
+    root_moduli, starting_points,
 };
 
 use super::feedback_range::{ClosedLoop, FeedbackRange};
@@ -67,7 +67,7 @@ fn error_bound(descending: &[f64], root: &Complex<f64>) -> f64 {
 /// Returns the h inside the range with the least spectral radius, `None` where there is none.
 ///
 /// There is none in an empty range, and none in an unbounded one along which the radius keeps falling. Roots that no h
-/// moves bound the radius from below; h is then the one that is best for the others.
+/// moves bound the radius from below; h is then the one that is best for the others. Of equally good h the smallest is given.
 pub(crate) fn optimum(closed_loop: &ClosedLoop, range: &FeedbackRange) -> Option<Optimum> {
     if range.is_empty() {
         return None;
@@ -106,139 +106,150 @@ impl Walk {
     }
 }
 
-/// Samples the range, narrows every valley in doubles, and settles the lowest in 192 binary places.
+/// Radii closer than this count as equal in doubles: the smallest h of a plateau is taken.
+const TIE: f64 = 1e-10;
+
+/// Samples the range, narrows every valley in doubles, and settles the lowest in twice the digits.
 fn search(closed_loop: &ClosedLoop, range: &FeedbackRange) -> Option<Optimum> {
     const SAMPLES: usize = 600;
     let walk = Walk { end: (!range.is_unbounded()).then(|| range.value()) };
-    let mut tracker = Tracker::new(closed_loop);
+    let pencil = Pencil::new(closed_loop);
     let grid: Vec<(f64, f64)> =
-        (1..SAMPLES).map(|i| i as f64 / SAMPLES as f64).map(|t| (t, tracker.radius(walk.h(t)))).collect();
+        (1..SAMPLES).map(|i| i as f64 / SAMPLES as f64).map(|t| (t, pencil.radius(walk.h(t)))).collect();
     let lowest = grid.iter().map(|(_, r)| *r).fold(f64::INFINITY, f64::min);
-    if range.is_unbounded() && tracker.radius(1e9) <= lowest {
+    if range.is_unbounded() && pencil.radius(1e9) <= lowest {
         return None;
     }
-    let mut valleys: Vec<(f64, f64)> = (1..grid.len() - 1)
-        .filter(|&i| grid[i].1 <= grid[i - 1].1 && grid[i].1 <= grid[i + 1].1)
-        .map(|i| narrow(&mut tracker, &walk, (grid[i - 1].0, grid[i + 1].0)))
+    let valleys: Vec<Valley> = (1..grid.len() - 1)
+        .filter(|&i| grid[i].1 < grid[i - 1].1 - TIE && grid[i].1 <= grid[i + 1].1 + TIE)
+        .map(|i| narrow(&pencil, &walk, (grid[i - 1].0, grid[i + 1].0)))
         .collect();
-    valleys.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let best = valleys.first()?.1;
+    let best = valleys.iter().map(|valley| valley.radius).fold(f64::INFINITY, f64::min);
     valleys
         .iter()
-        .take_while(|(_, radius)| *radius <= best + 1e-6)
-        .map(|(t, _)| settle(closed_loop, walk.h(*t)))
+        .filter(|valley| valley.radius <= best + 1e-3)
+        .map(|valley| settle(closed_loop, walk.h(valley.low), walk.h(valley.high)))
         .min_by(|a, b| a.radius.total_cmp(&b.radius))
 }
 
-/// Narrows a valley by ever finer grids; returns its bottom (t, r), good to the half of the digits that doubles give.
-fn narrow(tracker: &mut Tracker, walk: &Walk, (mut low, mut high): (f64, f64)) -> (f64, f64) {
+/// A stretch of the walk that holds one least radius, and about how low it is.
+struct Valley {
+    low: f64,
+    high: f64,
+    radius: f64,
+}
+
+/// Narrows a valley by finer grids, as far as doubles can be trusted beside a double root.
+fn narrow(pencil: &Pencil<f64>, walk: &Walk, (mut low, mut high): (f64, f64)) -> Valley {
     const POINTS: usize = 8;
+    const ROUNDS: usize = 3;
     let mut best = (low, f64::INFINITY);
-    for _ in 0..14 {
+    for _ in 0..ROUNDS {
         let step = (high - low) / POINTS as f64;
         let start = low;
         for k in 0..=POINTS {
             let t = start + step * k as f64;
-            let radius = tracker.radius(walk.h(t));
-            if radius < best.1 {
+            let radius = pencil.radius(walk.h(t));
+            if radius < best.1 - TIE {
                 best = (t, radius);
             }
         }
-        (low, high) = ((best.0 - step).max(low), (best.0 + step).min(high));
+        (low, high) = ((best.0 - 2.0 * step).max(low), (best.0 + 2.0 * step).min(high));
     }
-    best
+    Valley { low, high, radius: best.1 }
 }
 
-/// Roots followed from one h to the next in doubles.
-struct Tracker {
-    /// Coefficients of rho and of gamma/gamma(1), highest power first.
-    rho: Vec<f64>,
-    gamma: Vec<f64>,
-}
-
-impl Tracker {
-    fn new(closed_loop: &ClosedLoop) -> Self {
-        let scale = closed_loop.rho().leading();
-        let list = |p: &Polynomial| {
-            (0..=closed_loop.degree())
-                .rev()
-                .map(|k| rational_to_f64(&Rational::new(p.coefficient(k), scale.clone())))
-                .collect()
-        };
-        Self { rho: list(closed_loop.rho()), gamma: list(closed_loop.gamma()) }
-    }
-
-    fn radius(&mut self, h: f64) -> f64 {
-        let mut descending: Vec<f64> = self.rho.iter().zip(&self.gamma).map(|(r, g)| r + h * g).collect();
-        while descending.last() == Some(&0.0) {
-            descending.pop();
-        }
-        if descending.first().is_none_or(|c| *c == 0.0) {
-            return f64::INFINITY;
-        }
-        let mut roots = starting_points(&descending);
-        polish(&descending, &mut roots, 40);
-        roots.iter().map(Complex::modulus).fold(0.0, f64::max)
-    }
-}
-
-/// Finds the bottom of a valley near a double by golden sections in 192 binary places.
-fn settle(closed_loop: &ClosedLoop, near: f64) -> Optimum {
-    const SECTIONS: usize = 56;
-    let exact = rational_from_f64(near).unwrap_or_else(Rational::one);
-    let mut valley = Valley::new(closed_loop, &exact);
-    let margin = &exact * rational_from_f64(2e-6).unwrap_or_else(Rational::one);
-    let (mut low, mut high) =
-        (Fixed::from_rational(&(&exact - &margin)), Fixed::from_rational(&(exact + margin)));
-    let golden = Fixed::from_f64((5_f64.sqrt() - 1.0) / 2.0);
-    let inner = |from: &Fixed, to: &Fixed| from.clone() + (to.clone() - from.clone()) * golden.clone();
-    let (mut left, mut right) = (inner(&high, &low), inner(&low, &high));
-    let (mut at_left, mut at_right) = (valley.squared_radius(&left), valley.squared_radius(&right));
+/// Finds the bottom of a valley by golden sections in twice the digits.
+fn settle(closed_loop: &ClosedLoop, low: f64, high: f64) -> Optimum {
+    const SECTIONS: usize = 68;
+    let pencil = Pencil::new(closed_loop);
+    let wide = DoubleDouble::from_f64;
+    let golden = wide((5_f64.sqrt() - 1.0) / 2.0);
+    let inner = |from: DoubleDouble, to: DoubleDouble| from + (to - from) * golden;
+    let (mut low, mut high) = (wide(low), wide(high));
+    let (mut left, mut right) = (inner(high, low), inner(low, high));
+    let (mut at_left, mut at_right) = (pencil.squared_radius(left), pencil.squared_radius(right));
+    // On a plateau the left part is kept; elsewhere so small a difference means nothing.
+    let tie = wide(1.0) + wide(1e-28);
     for _ in 0..SECTIONS {
-        if at_left <= at_right {
+        if at_left <= at_right * tie {
             high = right;
             (right, at_right) = (left, at_left);
-            left = inner(&high, &low);
-            at_left = valley.squared_radius(&left);
+            left = inner(high, low);
+            at_left = pencil.squared_radius(left);
         } else {
             low = left;
             (left, at_left) = (right, at_right);
-            right = inner(&low, &high);
-            at_right = valley.squared_radius(&right);
+            right = inner(low, high);
+            at_right = pencil.squared_radius(right);
         }
     }
     let (h, squared) = if at_left <= at_right { (left, at_left) } else { (right, at_right) };
     Optimum { h: h.to_f64(), radius: squared.to_f64().sqrt() }
 }
 
-/// Roots followed from one h to the next in 192 binary places.
-struct Valley {
-    rho: Vec<Fixed>,
-    gamma: Vec<Fixed>,
-    roots: Vec<Complex<Fixed>>,
+/// The coefficients of pi_h for any h in one of the two arithmetics.
+struct Pencil<T> {
+    /// Coefficients of rho and of gamma/gamma(1), highest power first, for a leading coefficient 1 of rho.
+    rho: Vec<T>,
+    gamma: Vec<T>,
 }
 
-impl Valley {
-    fn new(closed_loop: &ClosedLoop, start: &Rational) -> Self {
+impl<T: Traceable> Pencil<T> {
+    fn new(closed_loop: &ClosedLoop) -> Self {
         let scale = closed_loop.rho().leading();
         let list = |p: &Polynomial| {
-            (0..=closed_loop.degree())
-                .rev()
-                .map(|k| Fixed::from_rational(&Rational::new(p.coefficient(k), scale.clone())))
-                .collect()
+            let coefficient = |k| Rational::new(p.coefficient(k), scale.clone());
+            (0..=closed_loop.degree()).rev().map(|k| T::from_rational(&coefficient(k))).collect()
         };
-        let (moving, zeros) = closed_loop.at(start).without_zero_roots();
-        let mut roots = simple_roots(&moving);
-        let nothing = Fixed::from_f64(0.0);
-        roots.extend(std::iter::repeat_n(Complex::new(nothing.clone(), nothing), zeros));
-        Self { rho: list(closed_loop.rho()), gamma: list(closed_loop.gamma()), roots }
+        Self { rho: list(closed_loop.rho()), gamma: list(closed_loop.gamma()) }
     }
 
-    fn squared_radius(&mut self, h: &Fixed) -> Fixed {
-        let descending: Vec<Fixed> =
+    /// |z|^2 of the largest root.
+    fn squared_radius(&self, h: T) -> T {
+        let nothing = T::from_f64(0.0);
+        let mut descending: Vec<T> =
             self.rho.iter().zip(&self.gamma).map(|(r, g)| r.clone() + h.clone() * g.clone()).collect();
-        polish(&descending, &mut self.roots, 200);
-        let nothing = Fixed::from_f64(0.0);
-        self.roots.iter().map(Complex::modulus_squared).fold(nothing, |a, b| if b > a { b } else { a })
+        while descending.last().is_some_and(Real::is_zero) {
+            descending.pop();
+        }
+        if descending.first().is_none_or(Real::is_zero) {
+            return T::from_f64(f64::INFINITY);
+        }
+        let doubles: Vec<f64> = descending.iter().map(Real::to_f64).collect();
+        let mut start = starting_points(&doubles);
+        polish(&doubles, &mut start, 60);
+        let mut roots: Vec<Complex<T>> = start.iter().enumerate().map(|(k, z)| tilted(z, k)).collect();
+        polish(&descending, &mut roots, 200);
+        roots.iter().map(Complex::modulus_squared).fold(nothing, |a, b| if b > a { b } else { a })
+    }
+}
+
+/// An approximation moved off the real axis by a trifle: real ones would stay real, though the roots be a complex pair.
+fn tilted<T: Real>(z: &Complex<f64>, index: usize) -> Complex<T> {
+    let trifle = 1e-9 * z.modulus() * (1.0 + index as f64);
+    Complex::new(T::from_f64(z.re), T::from_f64(z.im + trifle))
+}
+
+impl Pencil<f64> {
+    fn radius(&self, h: f64) -> f64 {
+        self.squared_radius(h).sqrt()
+    }
+}
+
+/// The two arithmetics of the search.
+trait Traceable: Real {
+    fn from_rational(value: &Rational) -> Self;
+}
+
+impl Traceable for f64 {
+    fn from_rational(value: &Rational) -> Self {
+        rational_to_f64(value)
+    }
+}
+
+impl Traceable for DoubleDouble {
+    fn from_rational(value: &Rational) -> Self {
+        Self::from_rational(value)
     }
 }

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use crate::math::{Rational, parse_rational};
 
 use super::error::{Defect, DefectKind, Place, TableError, nearest};
-use super::row::{Coefficients, Declared, Row};
+use super::row::{Coefficients, Declared, Places, Row};
 
 /// The keys of a row.
 const KEYS: [&str; 13] = [
@@ -66,9 +66,9 @@ fn repeated_ids(rows: &[Row]) -> Vec<Defect> {
     let mut first_lines: HashMap<&str, usize> = HashMap::new();
     rows.iter()
         .filter_map(|row| {
-            let first_line = *first_lines.entry(&row.id).or_insert(row.place.line);
+            let first_line = *first_lines.entry(&row.id).or_insert(row.places.row.line);
             let kind = DefectKind::DuplicateId { id: row.id.clone(), first_line };
-            (first_line != row.place.line).then_some(Defect { place: row.place, row: None, kind })
+            (first_line != row.places.row.line).then_some(Defect { place: row.places.row, row: None, kind })
         })
         .collect()
 }
@@ -91,13 +91,11 @@ impl Reader<'_> {
     /// The tables under `formula`; anything else at the top is reported.
     fn row_tables<'a, 'i>(&mut self, document: &'a DeTable<'i>, start: usize) -> Vec<Value<'a, 'i>> {
         let mut tables = Vec::new();
-        let mut found_any = false;
         for (key, value) in document {
             if key.get_ref() != "formula" {
                 self.unknown_key(key.get_ref(), key.span().start, "the file", &["formula"]);
                 continue;
             }
-            found_any = true;
             match value.get_ref() {
                 DeValue::Array(list) if list.iter().all(|entry| entry.get_ref().is_table()) => {
                     tables.extend(list.iter());
@@ -105,7 +103,7 @@ impl Reader<'_> {
                 _ => self.wrong_type("formula", "a list of rows, each begun by a line [[formula]]", value),
             }
         }
-        if !found_any || (tables.is_empty() && self.defects.is_empty()) {
+        if tables.is_empty() && self.defects.is_empty() {
             self.report(start, DefectKind::NoRows);
         }
         tables
@@ -157,7 +155,7 @@ impl Reader<'_> {
         let row = Row::new(&id.clone().unwrap_or_default(), coefficients);
         let row = row.map_err(|kind| self.report(coefficient_place(table, &kind, start), kind)).ok()?;
         self.row = None;
-        let place = Place::of(self.text, start);
+        let places = self.places(table, start);
         (self.defects.len() == before).then_some(Row {
             name,
             family,
@@ -165,9 +163,24 @@ impl Reader<'_> {
             source,
             attribution,
             note,
-            place,
+            places,
             ..row
         })
+    }
+
+    fn places(&self, table: &DeTable<'_>, start: usize) -> Places {
+        let of = |keys: &[&str]| {
+            let value = keys.iter().find_map(|key| table.get(*key));
+            Place::of(self.text, value.map_or(start, |value| value.span().start))
+        };
+        Places {
+            row: Place::of(self.text, start),
+            coefficients: of(&["difference", "alpha"]),
+            gamma: of(&["gamma"]),
+            order: of(&["order"]),
+            error_constant: of(&["error_constant"]),
+            zero_stable: of(&["zero_stable"]),
+        }
     }
 
     fn id(&mut self, table: &DeTable<'_>, start: usize) -> Option<String> {
@@ -191,11 +204,11 @@ impl Reader<'_> {
 
     fn require_claims(&mut self, table: &DeTable<'_>, start: usize) {
         let claims = [
-            ("order", "a row declares its order, to be checked; a draft check computes it"),
-            ("error_constant", "a row declares its error constant, to be checked; a draft check computes it"),
+            ("order", "a row declares its order, to be checked; `formula check --draft` computes it"),
+            ("error_constant", "a row declares its error constant, to be checked; `formula check --draft` computes it"),
             (
                 "zero_stable",
-                "a row declares whether it is zero-stable, to be checked; a draft check computes it",
+                "a row declares whether it is zero-stable, to be checked; `formula check --draft` computes it",
             ),
             ("source", "say where the coefficients are from, such as a key of the bibliography"),
         ];
@@ -255,9 +268,15 @@ impl Reader<'_> {
             )?)),
             DeValue::String(text) => parse_rational(text),
             DeValue::Float(float) => {
-                let text = float.as_str().to_owned();
-                self.report(value.span().start, DefectKind::BareFloat { key, text });
-                return None;
+                let text = crate::math::shortened(float.as_str());
+                match parse_rational(&float.as_str().replace('_', "")) {
+                    Ok(_) => {
+                        self.report(value.span().start, DefectKind::BareFloat { key, text });
+                        return None;
+                    }
+                    // nan and inf are no numbers in quotes either.
+                    Err(error) => Err(error),
+                }
             }
             _ => {
                 self.wrong_type(&key, "an integer or a number in quotes", value);

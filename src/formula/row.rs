@@ -56,8 +56,18 @@ pub struct Row {
     pub(crate) source: Option<String>,
     pub(crate) attribution: Option<String>,
     pub(crate) note: Option<String>,
-    /// Where the row begins, or 0, 0 for a row that is in no file.
-    pub(crate) place: Place,
+    pub(crate) places: Places,
+}
+
+/// Where the row and its parts stand in their file; 0, 0 throughout for a row that is in no file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Places {
+    pub(crate) row: Place,
+    pub(crate) coefficients: Place,
+    pub(crate) gamma: Place,
+    pub(crate) order: Place,
+    pub(crate) error_constant: Place,
+    pub(crate) zero_stable: Place,
 }
 
 impl Row {
@@ -77,7 +87,7 @@ impl Row {
             source: None,
             attribution: None,
             note: None,
-            place: Place::default(),
+            places: Places::default(),
         })
     }
 
@@ -127,7 +137,7 @@ impl Row {
 
     /// Returns line and column of the row in its file, counted from 1; 0 and 0 for a row from elsewhere.
     pub fn place(&self) -> Place {
-        self.place
+        self.places.row
     }
 
     /// The normalised weights; the shape has been checked.

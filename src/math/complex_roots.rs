@@ -1,4 +1,4 @@
-//! Complex roots as figures: all at once by the Ehrlich-Aberth iteration, in doubles or in 192 binary places.
+//! Complex roots as figures: all at once by the Ehrlich-Aberth iteration, in doubles or longer numbers.
 //!
 //! Nothing is decided with these; they are for showing moduli, spectral radii and their minimum.
 
@@ -7,9 +7,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use num_bigint::BigInt;
 use num_traits::Zero;
 
-use super::fixed::Fixed;
 use super::polynomial::Polynomial;
 use super::rational::Rational;
+use super::wide::Wide;
 
 /// The arithmetic that the iteration needs.
 pub(crate) trait Real:
@@ -25,9 +25,11 @@ pub(crate) trait Real:
     fn from_f64(value: f64) -> Self;
     /// The nearest double.
     fn to_f64(&self) -> f64;
+    /// The magnitude.
+    fn magnitude(&self) -> Self;
     /// Whether this is exactly zero.
     fn is_zero(&self) -> bool;
-    /// The relative size of a correction that is no longer worth making.
+    /// The relative rounding error of a few operations.
     fn resolution() -> f64;
 }
 
@@ -37,6 +39,9 @@ impl Real for f64 {
     }
     fn to_f64(&self) -> f64 {
         *self
+    }
+    fn magnitude(&self) -> Self {
+        f64::abs(*self)
     }
     fn is_zero(&self) -> bool {
         *self == 0.0
@@ -97,43 +102,60 @@ impl<T: Real> Complex<T> {
     }
 }
 
-/// The value of a real polynomial and of its derivative, coefficients highest power first.
-fn value_and_slope<T: Real>(descending: &[T], z: &Complex<T>) -> (Complex<T>, Complex<T>) {
+/// A real polynomial at a complex point.
+struct Value<T> {
+    value: Complex<T>,
+    slope: Complex<T>,
+    /// Whether the value is no larger than what rounding makes of it.
+    is_noise: bool,
+}
+
+/// The value of a polynomial and of its derivative, coefficients highest power first.
+fn evaluate<T: Real>(descending: &[T], z: &Complex<T>) -> Value<T> {
     let (mut value, mut slope) = (Complex::zero(), Complex::zero());
+    // sum |c_k| |z|^k: the rounding error of the value is at most about this times the resolution.
+    let modulus = T::from_f64(z.modulus());
+    let mut size = T::from_f64(0.0);
     for coefficient in descending {
         slope = slope.mul(z).add(&value);
         value = value.mul(z);
         value.re = value.re + coefficient.clone();
+        size = size * modulus.clone() + coefficient.magnitude();
     }
-    (value, slope)
+    let is_noise = value.re.magnitude() + value.im.magnitude() <= size * T::from_f64(T::resolution());
+    Value { value, slope, is_noise }
 }
 
-/// Improves approximations of all roots together until the corrections are below the resolution.
+/// Improves approximations of all roots together until no correction is worth making.
 ///
-/// Returns whether they are; repeated roots converge slowly and to fewer digits.
-pub(crate) fn polish<T: Real>(descending: &[T], roots: &mut [Complex<T>], most_rounds: usize) -> bool {
+/// A root is left alone once the polynomial there is zero to within rounding: nothing better can be had in this arithmetic. The
+/// cluster of a repeated root gets there too, with as many digits fewer as its multiplicity divides away.
+pub(crate) fn polish<T: Real>(descending: &[T], roots: &mut [Complex<T>], most_rounds: usize) {
+    let mut settled = vec![false; roots.len()];
     for _ in 0..most_rounds {
-        let mut largest: f64 = 0.0;
         for i in 0..roots.len() {
-            let step = aberth_step(descending, roots, i);
-            largest = largest.max(step.modulus() / roots[i].modulus().max(T::resolution().sqrt()));
-            roots[i] = roots[i].sub(&step);
+            if settled[i] {
+                continue;
+            }
+            match aberth_step(descending, roots, i) {
+                Some(step) => {
+                    settled[i] = step.modulus() <= T::resolution() * roots[i].modulus();
+                    roots[i] = roots[i].sub(&step);
+                }
+                None => settled[i] = true,
+            }
         }
-        if largest.is_nan() {
-            return false;
-        }
-        if largest <= T::resolution() {
-            return true;
+        if settled.iter().all(|done| *done) {
+            return;
         }
     }
-    false
 }
 
-/// p / (p' - p sum_j 1/(z_i - z_j)): Newton's step, with the other approximations divided out.
-fn aberth_step<T: Real>(descending: &[T], roots: &[Complex<T>], i: usize) -> Complex<T> {
-    let (value, slope) = value_and_slope(descending, &roots[i]);
-    if value.modulus_squared().is_zero() {
-        return Complex::zero();
+/// p / (p' - p sum_j 1/(z_i - z_j)): Newton's step, with the other approximations divided out; `None` at a root.
+fn aberth_step<T: Real>(descending: &[T], roots: &[Complex<T>], i: usize) -> Option<Complex<T>> {
+    let Value { value, slope, is_noise } = evaluate(descending, &roots[i]);
+    if is_noise {
+        return None;
     }
     let one = Complex::new(T::from_f64(1.0), T::from_f64(0.0));
     let mut repulsion = Complex::zero();
@@ -143,9 +165,9 @@ fn aberth_step<T: Real>(descending: &[T], roots: &[Complex<T>], i: usize) -> Com
         }
     }
     // At a stationary point any small move will do; this one is the same on every run.
-    value.checked_div(&slope.sub(&value.mul(&repulsion))).unwrap_or_else(|| {
+    value.checked_div(&slope.sub(&value.mul(&repulsion))).or_else(|| {
         let nudge = 1e-3 * (1.0 + roots[i].modulus().min(1e100));
-        Complex::new(T::from_f64(nudge), T::from_f64(nudge / 3.0))
+        Some(Complex::new(T::from_f64(nudge), T::from_f64(nudge / 3.0)))
     })
 }
 
@@ -211,8 +233,8 @@ pub fn root_moduli(polynomial: &Polynomial) -> Vec<f64> {
     complex_roots(polynomial).iter().map(|root| root.re.hypot(root.im)).collect()
 }
 
-/// The roots of a square-free polynomial with a nonzero constant term, in 192 binary places.
-pub(crate) fn simple_roots(square_free: &Polynomial) -> Vec<Complex<Fixed>> {
+/// The roots of a square-free polynomial with a nonzero constant term, in 192 significant bits.
+fn simple_roots(square_free: &Polynomial) -> Vec<Complex<Wide>> {
     const MOST_ROUNDS: usize = 400;
     let log = |c: &BigInt| {
         // The top 53 bits and their place: a logarithm for integers of any size.
@@ -221,22 +243,22 @@ pub(crate) fn simple_roots(square_free: &Polynomial) -> Vec<Complex<Fixed>> {
         (!c.is_zero()).then(|| super::rational_to_f64(&top).abs().log2() + drop as f64)
     };
     let logs: Vec<Option<f64>> = square_free.ascending().iter().map(log).collect();
-    let mut roots: Vec<Complex<Fixed>> = circles(&logs).into_iter().map(fixed_point).collect();
+    let mut roots: Vec<Complex<Wide>> = circles(&logs).into_iter().map(fixed_point).collect();
     let leading = square_free.leading();
-    let descending: Vec<Fixed> = square_free
+    let descending: Vec<Wide> = square_free
         .ascending()
         .iter()
         .rev()
-        .map(|c| Fixed::from_rational(&Rational::new(c.clone(), leading.clone())))
+        .map(|c| Wide::from_rational(&Rational::new(c.clone(), leading.clone())))
         .collect();
     polish(&descending, &mut roots, MOST_ROUNDS);
     roots
 }
 
-fn fixed_point((log, angle): (f64, f64)) -> Complex<Fixed> {
+fn fixed_point((log, angle): (f64, f64)) -> Complex<Wide> {
     let (whole, part) = (log.floor(), log - log.floor());
-    let scale = Fixed::power_of_two(whole as i64) * Fixed::from_f64(part.exp2());
-    Complex::new(scale.clone() * Fixed::from_f64(angle.cos()), scale * Fixed::from_f64(angle.sin()))
+    let scale = Wide::power_of_two(whole as i64) * Wide::from_f64(part.exp2());
+    Complex::new(scale.clone() * Wide::from_f64(angle.cos()), scale * Wide::from_f64(angle.sin()))
 }
 
 #[cfg(test)]

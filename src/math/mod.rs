@@ -1,7 +1,7 @@
 //! Exact polynomials and their root tests, and the numbers they are made of; rotations and small solves of static size.
 
 mod complex_roots;
-mod fixed;
+mod double_double;
 mod gram;
 mod modular;
 mod polynomial;
@@ -11,6 +11,7 @@ mod root_condition;
 mod rotation;
 mod routh;
 mod singular;
+mod wide;
 
 pub use complex_roots::{complex_roots, root_moduli};
 pub use gram::GramCholesky;
@@ -25,7 +26,8 @@ pub use rotation::rotation_vector;
 pub use routh::{is_schur, is_schur_within};
 pub use singular::SingularValues;
 
-pub(crate) use complex_roots::{Complex, Real, polish, simple_roots, starting_points};
-pub(crate) use fixed::Fixed;
+pub(crate) use complex_roots::{Complex, Real, polish, starting_points};
+pub(crate) use double_double::DoubleDouble;
 pub(crate) use rational::{common_denominator, shortened};
 pub(crate) use routh::{half_plane_image, last_hurwitz_determinant};
+pub(crate) use wide::Wide;

@@ -1,0 +1,148 @@
+//! Real numbers as unevaluated sums of two doubles: about 32 digits at the price of twenty operations.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::complex_roots::Real;
+use super::rational::{Rational, rational_from_f64, rational_to_f64};
+
+/// high + low with |low| at most half a unit in the last place of high (Dekker 1971; Knuth's two-sum).
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub(crate) struct DoubleDouble {
+    high: f64,
+    low: f64,
+}
+
+impl DoubleDouble {
+    /// Returns the number nearest to an exact one, to about 32 digits.
+    pub(crate) fn from_rational(value: &Rational) -> Self {
+        let high = rational_to_f64(value);
+        let rest = rational_from_f64(high).map_or(0.0, |high| rational_to_f64(&(value - high)));
+        Self::sum_of_ordered(high, rest)
+    }
+
+    /// a + b for |a| at least |b|.
+    fn sum_of_ordered(a: f64, b: f64) -> Self {
+        let high = a + b;
+        Self { high, low: b - (high - a) }
+    }
+
+    /// a + b, exactly.
+    fn sum_of(a: f64, b: f64) -> Self {
+        let high = a + b;
+        let b_part = high - a;
+        Self { high, low: (a - (high - b_part)) + (b - b_part) }
+    }
+
+    /// a b, exactly: halves of 26 bits have products without rounding.
+    fn product_of(a: f64, b: f64) -> Self {
+        let halves = |x: f64| {
+            let shifted = 134_217_729.0 * x;
+            let top = shifted - (shifted - x);
+            (top, x - top)
+        };
+        let ((a_top, a_rest), (b_top, b_rest)) = (halves(a), halves(b));
+        let high = a * b;
+        let low = ((a_top * b_top - high) + a_top * b_rest + a_rest * b_top) + a_rest * b_rest;
+        Self { high, low }
+    }
+}
+
+impl Add for DoubleDouble {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        let highs = Self::sum_of(self.high, other.high);
+        let lows = Self::sum_of(self.low, other.low);
+        let first = Self::sum_of_ordered(highs.high, highs.low + lows.high);
+        Self::sum_of_ordered(first.high, first.low + lows.low)
+    }
+}
+
+impl Neg for DoubleDouble {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { high: -self.high, low: -self.low }
+    }
+}
+
+impl Sub for DoubleDouble {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for DoubleDouble {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let product = Self::product_of(self.high, other.high);
+        Self::sum_of_ordered(product.high, product.low + (self.high * other.low + self.low * other.high))
+    }
+}
+
+impl Div for DoubleDouble {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        // Long division in three digits of a double each.
+        let digit = |rest: Self| Self { high: rest.high / other.high, low: 0.0 };
+        let first = digit(self);
+        let rest = self - first * other;
+        let second = digit(rest);
+        let third = digit(rest - second * other);
+        first + second + third
+    }
+}
+
+impl Real for DoubleDouble {
+    fn from_f64(value: f64) -> Self {
+        Self { high: value, low: 0.0 }
+    }
+
+    fn to_f64(&self) -> f64 {
+        self.high
+    }
+
+    fn magnitude(&self) -> Self {
+        if self.high < 0.0 { -*self } else { *self }
+    }
+
+    fn is_zero(&self) -> bool {
+        self.high == 0.0
+    }
+
+    fn resolution() -> f64 {
+        (-102_f64).exp2()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use num_traits::{Signed, Zero};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn exact(x: DoubleDouble) -> Rational {
+        let part = |x| rational_from_f64(x).expect("finite");
+        part(x.high) + part(x.low)
+    }
+
+    fn agrees(found: DoubleDouble, expected: &Rational) -> bool {
+        let error = (exact(found) - expected).abs();
+        error <= expected.abs() * rational_from_f64((-100_f64).exp2()).expect("finite")
+    }
+
+    proptest! {
+        #[test]
+        fn thirty_digits_are_right(a in -1000_i64..1000, b in 1_i64..1000, c in -1000_i64..1000, d in 1_i64..1000) {
+            let (x, y) = (Rational::new(a.into(), b.into()), Rational::new(c.into(), d.into()));
+            let (u, v) = (DoubleDouble::from_rational(&x), DoubleDouble::from_rational(&y));
+            prop_assert!(agrees(u, &x));
+            prop_assert!(agrees(u * v, &(exact(u) * exact(v))));
+            prop_assert!(agrees(u + v, &(exact(u) + exact(v))));
+            if !y.is_zero() {
+                prop_assert!(agrees(u / v, &(exact(u) / exact(v))));
+            }
+            prop_assert_eq!(u < v, exact(u) < exact(v));
+        }
+    }
+}
