@@ -168,7 +168,7 @@ fn settle(closed_loop: &ClosedLoop, low: f64, high: f64) -> Optimum {
     let inner = |from: DoubleDouble, to: DoubleDouble| from + (to - from) * golden;
     let (mut low, mut high) = (wide(low), wide(high));
     let (mut left, mut right) = (inner(high, low), inner(low, high));
-    let (mut at_left, mut at_right) = (pencil.squared_radius(left), pencil.squared_radius(right));
+    let (mut at_left, mut at_right) = (pencil.squared_radius(&left), pencil.squared_radius(&right));
     // On a plateau the left part is kept; elsewhere so small a difference means nothing.
     let tie = wide(1.0) + wide(1e-28);
     for _ in 0..SECTIONS {
@@ -176,12 +176,12 @@ fn settle(closed_loop: &ClosedLoop, low: f64, high: f64) -> Optimum {
             high = right;
             (right, at_right) = (left, at_left);
             left = inner(high, low);
-            at_left = pencil.squared_radius(left);
+            at_left = pencil.squared_radius(&left);
         } else {
             low = left;
             (left, at_left) = (right, at_right);
             right = inner(low, high);
-            at_right = pencil.squared_radius(right);
+            at_right = pencil.squared_radius(&right);
         }
     }
     let (h, squared) = if at_left <= at_right { (left, at_left) } else { (right, at_right) };
@@ -206,7 +206,7 @@ impl<T: Traceable> Pencil<T> {
     }
 
     /// |z|^2 of the largest root.
-    fn squared_radius(&self, h: T) -> T {
+    fn squared_radius(&self, h: &T) -> T {
         let nothing = T::from_f64(0.0);
         let mut descending: Vec<T> =
             self.rho.iter().zip(&self.gamma).map(|(r, g)| r.clone() + h.clone() * g.clone()).collect();
@@ -233,7 +233,7 @@ fn tilted<T: Real>(z: &Complex<f64>, index: usize) -> Complex<T> {
 
 impl Pencil<f64> {
     fn radius(&self, h: f64) -> f64 {
-        self.squared_radius(h).sqrt()
+        self.squared_radius(&h).sqrt()
     }
 }
 

@@ -205,7 +205,10 @@ impl Reader<'_> {
     fn require_claims(&mut self, table: &DeTable<'_>, start: usize) {
         let claims = [
             ("order", "a row declares its order, to be checked; `formula check --draft` computes it"),
-            ("error_constant", "a row declares its error constant, to be checked; `formula check --draft` computes it"),
+            (
+                "error_constant",
+                "a row declares its error constant, to be checked; `formula check --draft` computes it",
+            ),
             (
                 "zero_stable",
                 "a row declares whether it is zero-stable, to be checked; `formula check --draft` computes it",

@@ -103,7 +103,7 @@ impl<T: Real> Complex<T> {
 }
 
 /// A real polynomial at a complex point.
-struct Value<T> {
+struct Evaluated<T> {
     value: Complex<T>,
     slope: Complex<T>,
     /// Whether the value is no larger than what rounding makes of it.
@@ -111,7 +111,7 @@ struct Value<T> {
 }
 
 /// The value of a polynomial and of its derivative, coefficients highest power first.
-fn evaluate<T: Real>(descending: &[T], z: &Complex<T>) -> Value<T> {
+fn evaluate<T: Real>(descending: &[T], z: &Complex<T>) -> Evaluated<T> {
     let (mut value, mut slope) = (Complex::zero(), Complex::zero());
     // sum |c_k| |z|^k: the rounding error of the value is at most about this times the resolution.
     let modulus = T::from_f64(z.modulus());
@@ -123,7 +123,7 @@ fn evaluate<T: Real>(descending: &[T], z: &Complex<T>) -> Value<T> {
         size = size * modulus.clone() + coefficient.magnitude();
     }
     let is_noise = value.re.magnitude() + value.im.magnitude() <= size * T::from_f64(T::resolution());
-    Value { value, slope, is_noise }
+    Evaluated { value, slope, is_noise }
 }
 
 /// Improves approximations of all roots together until no correction is worth making.
@@ -153,7 +153,7 @@ pub(crate) fn polish<T: Real>(descending: &[T], roots: &mut [Complex<T>], most_r
 
 /// p / (p' - p sum_j 1/(z_i - z_j)): Newton's step, with the other approximations divided out; `None` at a root.
 fn aberth_step<T: Real>(descending: &[T], roots: &[Complex<T>], i: usize) -> Option<Complex<T>> {
-    let Value { value, slope, is_noise } = evaluate(descending, &roots[i]);
+    let Evaluated { value, slope, is_noise } = evaluate(descending, &roots[i]);
     if is_noise {
         return None;
     }

@@ -28,18 +28,19 @@ impl Wide {
         Self { mantissa: mantissa >> excess, exponent: exponent + excess.cast_signed() }
     }
 
-    fn quotient(numerator: &BigInt, denominator: &BigInt, exponent: i64) -> Self {
+    /// numerator / denominator, 0 when the latter is zero.
+    fn quotient(numerator: &BigInt, denominator: &BigInt) -> Self {
         // Enough places that the quotient has all its significant bits.
         let places = (SIGNIFICANT_BITS + 2 + denominator.bits()).saturating_sub(numerator.bits());
         match (numerator << places).checked_div(denominator) {
-            Some(quotient) => Self::rounded(quotient, exponent - places.cast_signed()),
+            Some(quotient) => Self::rounded(quotient, -places.cast_signed()),
             None => Self { mantissa: BigInt::zero(), exponent: 0 },
         }
     }
 
     /// Returns the nearest such number, rounded down in magnitude.
     pub(crate) fn from_rational(value: &Rational) -> Self {
-        Self::quotient(value.numer(), value.denom(), 0)
+        Self::quotient(value.numer(), value.denom())
     }
 
     /// Returns 2^exponent.
@@ -85,7 +86,9 @@ impl Mul for Wide {
 impl Div for Wide {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        Self::quotient(&self.mantissa, &other.mantissa, self.exponent - other.exponent)
+        Self::quotient(&self.mantissa, &other.mantissa)
+            * Self::power_of_two(self.exponent)
+            * Self::power_of_two(-other.exponent)
     }
 }
 
