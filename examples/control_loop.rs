@@ -2,6 +2,8 @@
 //!
 //! `cargo run --example control_loop`
 
+#![allow(clippy::print_stdout)]
+
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
 use kinstep::planner::Arm;
 use kinstep::robot::embedded;

@@ -2,6 +2,8 @@
 //!
 //! `cargo run --example draw_plan -- docs/pictures/dual_arm.svg` (without an argument the drawing goes to standard output).
 
+#![allow(clippy::print_stdout)]
+
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
 use kinstep::planner::{Arm, Plan};
 use kinstep::robot::{Robot, embedded};
@@ -128,7 +130,9 @@ fn draw_errors(svg: &mut String, curves: &[(&str, &Plan, &str)]) -> Result<(), B
         // The largest error of every few samples: narrower features than the drawing shows are peaks of these.
         let bins = plan.arms[0].errors.chunks(4).enumerate();
         let points: Vec<_> = bins
-            .map(|(i, bin)| place(plan.time(4 * i), bin.iter().map(|e| e.norm()).fold(0.0, f64::max)))
+            .map(|(i, bin)| {
+                place(plan.time(4 * i), bin.iter().map(kinstep::nalgebra::Vector6::norm).fold(0.0, f64::max))
+            })
             .filter(|&(_, y)| y < 380.0)
             .collect();
         polyline(svg, &points, &format!(r#"stroke="{colour}" stroke-width="2""#))?;

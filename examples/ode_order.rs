@@ -2,9 +2,12 @@
 //!
 //! `cargo run --example ode_order` takes a few rows; `-- ID...` takes yours, `-- FILE.toml ID...` rows from a file.
 
+#![allow(clippy::print_stdout)]
+
 use kinstep::formula::{Formula, FormulaTable};
 use kinstep::integrate::{IntegrateError, Multistep, Ode, Starter};
 use std::error::Error;
+use std::path::Path;
 
 /// Steps per unit of time, each twice the one before.
 const LADDER: [usize; 5] = [20, 40, 80, 160, 320];
@@ -13,7 +16,7 @@ const DURATION: usize = 4;
 fn main() -> Result<(), Box<dyn Error>> {
     let mut ids: Vec<String> = std::env::args().skip(1).collect();
     let mut table = FormulaTable::builtin().clone();
-    if let Some(file) = ids.first().filter(|id| id.ends_with(".toml")).cloned() {
+    if let Some(file) = ids.first().filter(|id| Path::new(id).extension().is_some()).cloned() {
         table = table.extended_with(FormulaTable::from_toml(&std::fs::read_to_string(file)?)?)?;
         ids.remove(0);
     }
