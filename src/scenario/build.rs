@@ -49,10 +49,16 @@ impl Scenario {
     /// # Errors
     /// As [`with_formulas`].
     pub fn formula_table(&self, folder: Option<&Path>) -> Result<FormulaTable, ScenarioError> {
-        self.formulas.iter().try_fold(FormulaTable::builtin().clone(), |table, file| {
+        let mut table = FormulaTable::builtin().clone();
+        for (index, file) in self.formulas.iter().enumerate() {
             let beside = folder.map_or_else(|| PathBuf::from(file), |folder| folder.join(file));
-            with_formulas(&table, &beside)
-        })
+            let at = KeyPath::dotted("formulas").index(index);
+            table = with_formulas(&table, &beside).map_err(|e| match e.kind {
+                ErrorKind::File => ScenarioError::at(e.kind, &at, e.message),
+                _ => e,
+            })?;
+        }
+        Ok(table)
     }
 
     /// Returns a planner for the scenario with a row of `table`; robot files are looked for from `folder`, the place
@@ -73,7 +79,9 @@ impl Scenario {
     fn formula_of<'t>(&self, table: &'t FormulaTable) -> Result<&'t Formula, ScenarioError> {
         let at = KeyPath::dotted("formula");
         let formula = table.get(&self.formula).map_err(|e| ScenarioError::at(ErrorKind::Scenario, &at, e))?;
-        formula.runnable().map_err(|e| ScenarioError::at(ErrorKind::Formula, &at, e))?;
+        let runnable =
+            if self.allow_unstable { formula.runnable() } else { formula.runnable_with_feedback() };
+        runnable.map_err(|e| ScenarioError::at(ErrorKind::Formula, &at, e))?;
         Ok(formula)
     }
 
@@ -120,7 +128,7 @@ impl Scenario {
             PlannerError::InitialLength { arm, .. }
             | PlannerError::InitialNonFinite { arm, .. }
             | PlannerError::InitialOutsideLimits { arm, .. } => (ErrorKind::Scenario, of_arm(arm, "q0")),
-            PlannerError::PathStart { arm, .. } => (ErrorKind::Scenario, of_arm(arm, "path")),
+            PlannerError::PathStart { arm, .. } => (ErrorKind::Scenario, of_arm(arm, "path").key("center")),
             PlannerError::NoJoints { arm, .. } => (ErrorKind::Robot, of_arm(arm, "tip")),
             PlannerError::Integrate(_) => (ErrorKind::Formula, KeyPath::dotted("formula")),
             _ => (ErrorKind::Scenario, KeyPath::default()),

@@ -1,6 +1,6 @@
 //! What a scenario must satisfy before anything is looked up or computed.
 
-use super::error::{ErrorKind, ScenarioError, suggestion};
+use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
 use super::model::{ArmSpec, Scenario, TaskKind};
 use super::path_spec::{PathKind, PathSpec, TurnSpec};
@@ -126,11 +126,7 @@ fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), Scena
     let (kind, known) = (path.kind.name(), path.kind.parameters());
     for given in path.given() {
         require(known.contains(&given), &at.key(given), || {
-            format!(
-                "a {kind} does not use this; it has {} ({})",
-                known.join(", "),
-                suggestion(given, known.clone())
-            )
+            format!("a {kind} has no such parameter; it has {}", known.join(", "))
         })?;
     }
     for needed in path.kind.required() {

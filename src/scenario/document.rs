@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use toml_edit::{Document, Item, TableLike};
 
-use super::error::{ErrorKind, Place, ScenarioError, suggestion};
+use super::error::{ErrorKind, Place, ScenarioError, not_one_of, suggestion};
 use super::key_path::{KeyPath, Step};
 use super::model::Scenario;
 use super::overrides;
@@ -143,13 +143,13 @@ impl ScenarioText {
                 (path, format!("there is no such key; {}", suggestion(key, known.iter().copied())))
             }
             Some((key, _)) if said.starts_with("missing field") => {
-                let table = entries.iter().rfind(|entry| entry.value.as_ref() == Some(&span));
-                let table = table.map_or_else(KeyPath::default, |entry| entry.path.clone());
+                // The span is that of the table; for the scenario as a whole it is empty.
+                let inside = entries.iter().any(|entry| entry.value.as_ref() == Some(&span));
+                let table = if inside { path } else { KeyPath::default() };
                 (table.key(key), "this key is missing".to_owned())
             }
             Some((value, known)) if said.starts_with("unknown variant") => {
-                let hint = suggestion(value, known.iter().copied());
-                (path, format!("\"{value}\" is not one of {}; {hint}", known.join(", ")))
+                (path, format!("\"{value}\" is {}", not_one_of(value, known)))
             }
             _ => (path, said.to_owned()),
         };
@@ -188,26 +188,31 @@ fn collect_item(item: &Item, path: &KeyPath, found: &mut Vec<Entry>) {
         collect_table(table, path, found);
     } else if let Some(tables) = item.as_array_of_tables() {
         for (index, table) in tables.iter().enumerate() {
-            let path = element_path(path, index, table);
-            found.push(Entry { path: path.clone(), key: None, value: table.span() });
-            collect_table(table, &path, found);
+            collect_element(table, table.span(), path, index, found);
         }
     } else if let Some(array) = item.as_array() {
         for (index, value) in array.iter().enumerate() {
-            let table = value.as_inline_table();
-            let path = table.map_or_else(|| path.index(index), |table| element_path(path, index, table));
-            found.push(Entry { path: path.clone(), key: None, value: value.span() });
-            if let Some(table) = table {
-                collect_table(table, &path, found);
+            match value.as_inline_table() {
+                Some(table) => collect_element(table, value.span(), path, index, found),
+                None => found.push(Entry { path: path.index(index), key: None, value: value.span() }),
             }
         }
     }
 }
 
-/// Arms are spoken of by name, other elements of arrays by their place.
-fn element_path(path: &KeyPath, index: usize, table: &dyn TableLike) -> KeyPath {
+/// A table of an array is found by its name, the way people speak of arms, and by its place.
+fn collect_element(
+    table: &dyn TableLike,
+    span: Option<Range<usize>>,
+    path: &KeyPath,
+    index: usize,
+    found: &mut Vec<Entry>,
+) {
     let name = table.get("name").and_then(Item::as_str).filter(|name| !name.is_empty());
-    name.map_or_else(|| path.index(index), |name| path.key(name))
+    for path in name.map(|name| path.key(name)).into_iter().chain([path.index(index)]) {
+        found.push(Entry { path: path.clone(), key: None, value: span.clone() });
+        collect_table(table, &path, found);
+    }
 }
 
 /// Returns the innermost key whose text holds the span, and whether the span lies on the key rather than the value.
@@ -220,7 +225,8 @@ fn path_at(entries: &[Entry], span: &Range<usize>) -> (KeyPath, bool) {
             .into_iter()
             .filter_map(|(length, entry, on_key)| length.map(|length| (length, entry, on_key)))
     });
-    // Of equal spans (an array of tables and its first table) the later one is the inner one.
+    // Of equal spans (an array of tables and its first table) the longer path is the inner one; of two paths of one
+    // length the name stands before the place.
     let best =
         candidates.min_by_key(|(length, entry, _)| (*length, std::cmp::Reverse(entry.path.steps().len())));
     best.map_or_else(Default::default, |(_, entry, on_key)| (entry.path.clone(), on_key))

@@ -82,18 +82,26 @@ impl ScenarioError {
     }
 }
 
-/// Returns " Did you mean `x`?" where one of `known` is near to `name`, and the list of them where none is.
+/// Returns `did you mean NAME?` where one of `known` is near to `name`, else the list of them.
 pub(crate) fn suggestion<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();
-    let near = known
-        .iter()
-        .map(|k| (strsim::normalized_damerau_levenshtein(name, k), k))
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    match near {
-        Some((likeness, nearest)) if likeness >= 0.5 => format!("did you mean {nearest}?"),
-        _ if known.is_empty() => "there is none to choose from".to_owned(),
-        _ => format!("known are {}", known.join(", ")),
+    match nearest(name, &known) {
+        Some(nearest) => format!("did you mean {nearest}?"),
+        None if known.is_empty() => "there is none to choose from".to_owned(),
+        None => format!("known are {}", known.join(", ")),
     }
+}
+
+/// Returns `not one of A, B, C`, and the one that is near to `name`, if there is one.
+pub(crate) fn not_one_of(name: &str, known: &[&str]) -> String {
+    let hint = nearest(name, known).map_or_else(String::new, |nearest| format!("; did you mean {nearest}?"));
+    format!("not one of {}{hint}", known.join(", "))
+}
+
+fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    let likeness = |k: &&'a str| (strsim::normalized_damerau_levenshtein(name, k), *k);
+    let best = known.iter().map(likeness).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(best.1).filter(|_| best.0 >= 0.5)
 }
 
 #[cfg(test)]

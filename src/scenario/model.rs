@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::path_spec::PathSpec;
-use super::real::Real;
+use super::real::{Real, exactly};
 
 /// A plan to be made: how time is discretised, what moves, along what, and how redundancy is resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -121,10 +121,10 @@ pub enum TaskKind {
 #[serde(deny_unknown_fields)]
 pub struct Mount {
     /// Position [m].
-    #[serde(default = "zeros")]
+    #[serde(default = "zeros", deserialize_with = "exactly")]
     pub xyz: [Real; 3],
     /// Roll, pitch and yaw about fixed axes [rad], as in URDF.
-    #[serde(default = "zeros")]
+    #[serde(default = "zeros", deserialize_with = "exactly")]
     pub rpy: [Real; 3],
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::real::Real;
+use super::real::{Real, exactly, some_exactly};
 
 /// A path for the tip. Curves are drawn in `plane`, turned by `rotation`, and shifted so that they begin at the
 /// tip's position at q0 unless `center` is given.
@@ -25,10 +25,10 @@ pub struct PathSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacement: Option<Vec<Real>>,
     /// Half width and half height of a Lissajous curve [m].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "some_exactly", skip_serializing_if = "Option::is_none")]
     pub amplitudes: Option<[Real; 2]>,
     /// Periods of a Lissajous curve per turn of the angle, in x and in y.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "some_exactly", skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<[Real; 2]>,
     /// Phase of the x part of a Lissajous curve [rad]. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -109,6 +109,7 @@ pub enum TimeLawKind {
 #[serde(deny_unknown_fields)]
 pub struct TurnSpec {
     /// Axis in world coordinates; its length does not matter, but it must have one.
+    #[serde(deserialize_with = "exactly")]
     pub axis: [Real; 3],
     /// Angle of the whole turn [rad].
     pub angle: Real,

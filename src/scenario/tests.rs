@@ -125,13 +125,26 @@ fn a_wrong_type_and_a_bad_expression_are_refused_where_they_stand() {
 fn a_parameter_of_another_kind_is_refused_with_the_kinds_own() {
     let error = refused(&SMALL.replace("displacement = [0.1, 0]", "displacement = [0.1, 0]\npetals = 3"));
     assert!(
-        error.message.contains("arm.right.path.petals: a line does not use this; it has to, displacement"),
+        error
+            .message
+            .contains("arm.right.path.petals: a line has no such parameter; it has to, displacement"),
         "{error}"
     );
     assert_eq!(place(&error), (29, 10));
     let error = refused(&SMALL.replace("radius = 0.4, ", ""));
     assert_eq!(error.message, "arm.left.path.radius: a tricuspid needs this");
     assert_eq!(place(&error).0, 17);
+}
+
+#[test]
+fn a_list_of_the_wrong_length_is_refused_rather_than_cut() {
+    let error =
+        refused(&SMALL.replace("robot = \"planar4\"", "mount = { xyz = [1, 2, 3, 4] }\nrobot = \"planar4\""));
+    assert_eq!(error.message, "arm.left.mount.xyz: expected 3 numbers, got 4");
+    assert_eq!(place(&error), (12, 17));
+    let lissajous = "{ kind = \"lissajous\", amplitudes = [1], frequencies = [1, 2] }";
+    let error = with(&[&format!("arm.left.path={lissajous}")]).unwrap_err();
+    assert!(error.message.starts_with("arm.left.path.amplitudes: expected 2 numbers, got 1"), "{error}");
 }
 
 #[test]
