@@ -43,7 +43,7 @@ pub(super) struct Failure {
     pub(super) exit: Exit,
     pub(super) message: String,
     pub(super) file: Option<String>,
-    pub(super) place: Option<Place>,
+    pub(super) place: Option<Box<Place>>,
 }
 
 impl Failure {
@@ -69,7 +69,7 @@ impl From<ScenarioError> for Failure {
             ErrorKind::Formula => Exit::Formula,
             ErrorKind::File => Exit::File,
         };
-        let file = error.place.as_ref().and_then(|place| place.file.clone());
+        let file = error.place.as_ref().and_then(|place| place.file.clone()).or(error.file);
         Self { exit, message: error.message, file, place: error.place }
     }
 }

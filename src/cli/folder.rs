@@ -15,6 +15,10 @@ pub(super) struct Folder {
 impl Folder {
     /// Makes the folder, unless it is there, and refuses before anything is computed if one of `names` is in it.
     pub(super) fn open(path: &Path, replace: bool, names: &[&str]) -> Result<Self, Failure> {
+        if path.exists() && !path.is_dir() {
+            let message = format!("{}: this is a file; --out names a folder", path.display());
+            return Err(Failure::new(Exit::File, message).in_file(&path.display().to_string()));
+        }
         std::fs::create_dir_all(path)
             .map_err(|source| failure(&WriteError::Io { path: path.to_owned(), source }))?;
         let folder = Self { path: path.to_owned(), replace };

@@ -53,3 +53,27 @@ pub(super) fn schema() -> Schema {
         }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn names_the_keys_of_every_built_in_row_and_requires_no_others() {
+        let table: toml::Table = toml::from_str(include_str!("../formula/table.toml")).unwrap();
+        let schema = super::schema();
+        let row = schema.pointer("/$defs/Row").unwrap();
+        let rows = table["formula"].as_array().unwrap();
+        assert!(!rows.is_empty());
+        for declared in rows {
+            let declared = declared.as_table().unwrap();
+            for key in declared.keys() {
+                assert!(row["properties"].get(key).is_some(), "{key} is not in the schema");
+            }
+            for key in row["required"].as_array().unwrap() {
+                assert!(
+                    declared.contains_key(key.as_str().unwrap()),
+                    "{key} is required, but {declared:?} lacks it"
+                );
+            }
+        }
+    }
+}

@@ -144,7 +144,8 @@ mod tests {
     #[test]
     fn a_failure_shows_its_place_and_a_caret() {
         let place = Place::of_byte(None, "a = 1\nsigma = 0\n", 14);
-        let failure = Failure { place: Some(place), ..Failure::usage("sigma: no").in_file("s.toml") };
+        let failure =
+            Failure { place: Some(Box::new(place)), ..Failure::usage("sigma: no").in_file("s.toml") };
         assert_eq!(
             failure_text(&failure, false),
             "s.toml:2:9: error: sigma: no\n 2 | sigma = 0\n   |         ^"

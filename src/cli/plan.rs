@@ -8,7 +8,7 @@ use super::folder::Folder;
 use super::output::Output;
 use super::progress::Progress;
 use crate::formula::FormulaTable;
-use crate::planner::{Plan, PlanStatus, Planner};
+use crate::planner::{LimitKind, Plan, PlanStatus, Planner};
 use crate::report::{PlanCsv, PlanFormat, PlanJson, PlanText};
 use crate::scenario::{Scenario, ScenarioText, with_formulas};
 
@@ -43,7 +43,11 @@ pub(super) fn run(
         } else {
             ""
         };
-        output.text(&format!("{head}{}{}", written(&PlanText, &plan), closing(arguments, &plan, &table)))?;
+        output.text(&format!(
+            "{head}{}{}",
+            written(&PlanText, &plan),
+            closing(arguments, &plan, &table, scenario.duration.value())
+        ))?;
     }
     Ok(exit(&plan))
 }
@@ -90,31 +94,62 @@ fn exit(plan: &Plan) -> Exit {
 }
 
 /// Where the files are, and what to try next.
-fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable) -> String {
+fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, duration: f64) -> String {
     let name = arguments.scenario.as_ref().map_or_else(String::new, |file| format!(" {}", file.display()));
-    let mut next: Vec<(String, String)> = Vec::new();
-    let mut try_next = |command: &str, why: String| next.push((format!("kinstep {command}"), why));
+    let mut next = Vec::new();
     let mut written = String::new();
     match &arguments.out {
-        Some(folder) => {
-            written = format!("\nWritten to {}: {}.\n", folder.display(), NAMES.join(", "));
-        }
-        None => try_next(&format!("plan{name} --out results"), "the trajectory as a file".to_owned()),
+        Some(folder) => written = format!("\nWritten to {}: {}.\n", folder.display(), NAMES.join(", ")),
+        None => next.push(("--out results".to_owned(), "the trajectory as a file".to_owned())),
     }
-    if let Some(formula) = table.get(&plan.formula).ok().filter(|_| plan.is_completed()) {
-        let fold = 1_u64 << (formula.order() + 1).min(60);
-        let why = format!("errors about {fold} times smaller: order {}", formula.order());
-        try_next(&format!("plan{name} --set sigma={}", plan.sigma / 2.0), why);
-    }
-    if plan.formula != "split-ab6" {
-        let why = "a deadbeat loop of order 6".to_owned();
-        try_next(&format!("plan{name} --set formula=split-ab6 --set law.h=1"), why);
-    }
+    next.extend(suggestions(plan, table, duration));
+    let mut lines: Vec<[String; 2]> =
+        next.into_iter().map(|(arguments, why)| [format!("kinstep plan{name} {arguments}"), why]).collect();
     if arguments.scenario.is_none() {
-        try_next("schema scenario", "every key of a scenario of your own".to_owned());
+        lines.push(["kinstep schema scenario", "every key of a scenario of your own"].map(str::to_owned));
     }
-    let width = next.iter().map(|(command, _)| command.chars().count()).max().unwrap_or(0);
+    let width = lines.iter().map(|[command, _]| command.chars().count()).max().unwrap_or(0);
     let lines: Vec<String> =
-        next.iter().map(|(command, why)| format!("  {command:width$}  # {why}\n")).collect();
-    format!("{written}\nNext:\n{}", lines.concat())
+        lines.iter().map(|[command, why]| format!("  {command:width$}  # {why}\n")).collect();
+    if lines.is_empty() { written } else { format!("{written}\nNext:\n{}", lines.concat()) }
+}
+
+/// What would make this plan better, as arguments and the reason.
+fn suggestions(plan: &Plan, table: &FormulaTable, duration: f64) -> Vec<(String, String)> {
+    let mut next = Vec::new();
+    let Ok(formula) = table.get(&plan.formula) else { return next };
+    let best = formula.optimum().map(|optimum| format!("{:.3}", optimum.h));
+    if plan.status == PlanStatus::Diverged && !formula.feedback_range().contains(plan.h) {
+        next.extend(
+            best.map(|h| (format!("--set law.h={h}"), "the formula's best feedback step".to_owned())),
+        );
+    }
+    if !plan.is_completed() {
+        return next;
+    }
+    if let Some(excess) = velocity_excess(plan) {
+        let longer = (duration * excess * 1.05).ceil();
+        next.push((
+            format!("--set duration={longer}"),
+            "slow enough for the joints' velocity limits".to_owned(),
+        ));
+    }
+    let fold = 1_u64 << (formula.order() + 1).min(60);
+    let finer = plan.sigma / 2.0;
+    next.push((
+        format!("--set sigma={finer}"),
+        format!("errors about {fold} times smaller: order {}", formula.order()),
+    ));
+    if plan.formula != "split-ab6" {
+        let arguments = "--set formula=split-ab6 --set law.h=1 --set start=rk8".to_owned();
+        next.push((arguments, "a deadbeat loop of order 6".to_owned()));
+    }
+    next
+}
+
+/// By what factor the worst joint velocity exceeds its limit, where one does: velocities fall like 1/duration.
+fn velocity_excess(plan: &Plan) -> Option<f64> {
+    let all = plan.arms.iter().flat_map(|arm| &arm.violations);
+    let excess = all.filter(|v| v.kind == LimitKind::Velocity).map(|v| (v.value / v.limit).abs());
+    excess.filter(|excess| excess.is_finite()).reduce(f64::max)
 }

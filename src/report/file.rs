@@ -26,7 +26,6 @@ fn plain(error: &io::Error) -> String {
         io::ErrorKind::StorageFull => "the disk is full".to_owned(),
         io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only".to_owned(),
         io::ErrorKind::NotADirectory => "a file is in the place of a folder".to_owned(),
-        io::ErrorKind::AlreadyExists => "something else has that name".to_owned(),
         _ => error.to_string(),
     }
 }

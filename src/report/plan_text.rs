@@ -36,8 +36,8 @@ impl PlanFormat for PlanText {
             let norms: Vec<f64> = arm.errors.iter().map(nalgebra::Vector6::norm).collect();
             writeln!(out, "  {:width$}  {}", arm.name, sparkline(&norms, CURVE))?;
         }
-        for arm in &plan.arms {
-            write_violations(arm, out)?;
+        if !plan.is_within_limits() {
+            write!(out, "\n{}", violations(&plan.arms))?;
         }
         plan.warnings.iter().try_for_each(|warning| writeln!(out, "\nwarning: {warning}"))
     }
@@ -65,17 +65,15 @@ fn errors(plan: &Plan) -> Table {
     table
 }
 
-fn write_violations(arm: &ArmPlan, out: &mut dyn Write) -> io::Result<()> {
-    arm.violations.iter().try_for_each(|v| {
-        writeln!(
-            out,
-            "\nlimit: arm {}, joint {}: {} {} at t = {} s, the limit is {}",
-            arm.name,
-            v.joint,
-            v.kind.name(),
-            short(v.value),
-            short(v.t),
-            short(v.limit)
-        )
-    })
+fn violations(arms: &[ArmPlan]) -> Table {
+    let mut table = Table::new(["limit crossed", "joint", "of", "at worst", "limit", "t [s]"]);
+    for arm in arms {
+        for v in &arm.violations {
+            let figures = [v.value, v.limit, v.t].map(short);
+            table.row(
+                [arm.name.clone(), v.joint.clone(), v.kind.name().to_owned()].into_iter().chain(figures),
+            );
+        }
+    }
+    table
 }

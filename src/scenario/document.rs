@@ -155,7 +155,7 @@ impl ScenarioText {
         };
         let mut refusal = ScenarioError::at(ErrorKind::Scenario, &path, problem);
         if self.assignments.is_empty() {
-            refusal.place = Some(self.place_of_byte(span.start));
+            refusal.place = Some(Box::new(self.place_of_byte(span.start)));
         }
         self.placed(refusal)
     }
@@ -188,12 +188,12 @@ fn collect_item(item: &Item, path: &KeyPath, found: &mut Vec<Entry>) {
         collect_table(table, path, found);
     } else if let Some(tables) = item.as_array_of_tables() {
         for (index, table) in tables.iter().enumerate() {
-            collect_element(table, table.span(), path, index, found);
+            collect_element(table, table.span().as_ref(), path, index, found);
         }
     } else if let Some(array) = item.as_array() {
         for (index, value) in array.iter().enumerate() {
             match value.as_inline_table() {
-                Some(table) => collect_element(table, value.span(), path, index, found),
+                Some(table) => collect_element(table, value.span().as_ref(), path, index, found),
                 None => found.push(Entry { path: path.index(index), key: None, value: value.span() }),
             }
         }
@@ -203,14 +203,14 @@ fn collect_item(item: &Item, path: &KeyPath, found: &mut Vec<Entry>) {
 /// A table of an array is found by its name, the way people speak of arms, and by its place.
 fn collect_element(
     table: &dyn TableLike,
-    span: Option<Range<usize>>,
+    span: Option<&Range<usize>>,
     path: &KeyPath,
     index: usize,
     found: &mut Vec<Entry>,
 ) {
     let name = table.get("name").and_then(Item::as_str).filter(|name| !name.is_empty());
     for path in name.map(|name| path.key(name)).into_iter().chain([path.index(index)]) {
-        found.push(Entry { path: path.clone(), key: None, value: span.clone() });
+        found.push(Entry { path: path.clone(), key: None, value: span.cloned() });
         collect_table(table, &path, found);
     }
 }
@@ -234,8 +234,7 @@ fn path_at(entries: &[Entry], span: &Range<usize>) -> (KeyPath, bool) {
 
 /// Returns the text of a file, with a sentence for what stands in the way.
 pub(crate) fn read_text(file: &Path) -> Result<String, ScenarioError> {
-    let refuse =
-        |problem: String| ScenarioError::new(ErrorKind::File, format!("{}: {problem}", display(file)));
+    let refuse = |problem: String| ScenarioError::of_file(file, format!("{}: {problem}", display(file)));
     let unreadable = |e: &std::io::Error| {
         refuse(match e.kind() {
             std::io::ErrorKind::NotFound => "there is no such file".to_owned(),

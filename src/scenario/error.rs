@@ -60,24 +60,31 @@ pub struct ScenarioError {
     /// The key that the sentence is about, where it is about one.
     pub path: Option<KeyPath>,
     /// Where that key, or the offending text, stands.
-    pub place: Option<Place>,
+    pub place: Option<Box<Place>>,
+    /// The file that the sentence is about as a whole, where it can not be read.
+    pub file: Option<String>,
 }
 
 impl ScenarioError {
     /// Returns a refusal without a place.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
-        Self { kind, message: message.into(), path: None, place: None }
+        Self { kind, message: message.into(), path: None, place: None, file: None }
     }
 
     /// Returns a refusal of the value at `path`; the sentence begins with the path.
     pub fn at(kind: ErrorKind, path: &KeyPath, problem: impl std::fmt::Display) -> Self {
-        Self { kind, message: format!("{path}: {problem}"), path: Some(path.clone()), place: None }
+        Self { path: Some(path.clone()), ..Self::new(kind, format!("{path}: {problem}")) }
+    }
+
+    /// Returns the refusal of a file that can not be read.
+    pub fn of_file(file: &std::path::Path, message: impl Into<String>) -> Self {
+        Self { file: Some(file.display().to_string()), ..Self::new(ErrorKind::File, message) }
     }
 
     /// Returns the same refusal with a place, unless it has one.
     #[must_use]
     pub fn or_placed(mut self, place: Option<Place>) -> Self {
-        self.place = self.place.or(place);
+        self.place = self.place.or_else(|| place.map(Box::new));
         self
     }
 }

@@ -75,7 +75,7 @@ impl RobotSource {
     /// Returns the refusal that a failed [`RobotSource::read`] means, with its place in the URDF.
     pub fn refusal(&self, error: &ReadError) -> ScenarioError {
         let ReadError::Urdf { error, .. } = error else {
-            return ScenarioError::new(ErrorKind::File, error.to_string());
+            return ScenarioError::of_file(Path::new(&self.label()), error.to_string());
         };
         let errors =
             error.diagnostics().iter().filter(|d| d.severity == crate::robot::Severity::Error).count();

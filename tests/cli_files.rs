@@ -1,0 +1,118 @@
+//! Files, streams and refusals, by the table of exit codes.
+
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
+
+mod cli;
+
+use cli::{Desk, SMALL, kinstep};
+
+#[test]
+fn files_that_are_there_are_replaced_only_by_force() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    desk.run(&["plan", "s.toml", "--out", "o"]).expect(0);
+    let before = std::fs::read(desk.path("o/trajectory.csv")).unwrap();
+    let run = desk.run(&["plan", "s.toml", "--out", "o", "--set", "law.h=0.3"]).expect(6);
+    assert!(run.err.contains("--force"), "{}", run.err);
+    assert_eq!(std::fs::read(desk.path("o/trajectory.csv")).unwrap(), before);
+    desk.run(&["plan", "s.toml", "--out", "o", "--set", "law.h=0.3", "--force"]).expect(0);
+    assert_ne!(std::fs::read(desk.path("o/trajectory.csv")).unwrap(), before);
+    assert_eq!(desk.names("o"), ["plan.json", "scenario.toml", "trajectory.csv"]);
+}
+
+#[test]
+fn a_refused_scenario_leaves_no_folder_and_no_file() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    desk.run(&["plan", "s.toml", "--out", "o", "--set", "law.h=7"]).expect(2);
+    assert_eq!(desk.names("."), ["s.toml"]);
+}
+
+#[test]
+fn what_can_not_be_read_or_written_is_exit_6_with_the_file() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    for arguments in [
+        &["plan", "nowhere.toml"][..],
+        &["plan", "."],
+        &["plan", "s.toml", "--out", "s.toml"],
+        &["plan", "s.toml", "--out", "s.toml/deeper"],
+        &["plan", "s.toml", "--formulas", "nowhere.toml"],
+        &["plan", "s.toml", "--set", "arm.left.robot=nowhere.urdf"],
+        &["formula", "check", "nowhere.toml"],
+        &["formula", "list", "--formulas", "nowhere.toml"],
+        &["robot", "show", "nowhere.urdf"],
+        &["robot", "check", "."],
+        &["robot", "fk", "nowhere.urdf", "--base", "a", "--tip", "b", "--q", "1"],
+        &["reproduce", "--out", "s.toml"],
+    ] {
+        let error = desk.run(&[arguments, &["--json"]].concat()).expect(6).error();
+        assert!(error["message"].as_str().unwrap().len() > 10, "{error}");
+        let run = desk.run(arguments).expect(6);
+        assert_eq!(run.out, "", "{arguments:?}");
+        assert!(run.err.starts_with("error: ") || run.err.contains(": error: "), "{}", run.err);
+    }
+    assert_eq!(desk.names("."), ["s.toml"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_a_sentence_and_a_closed_pipe_is_silent() {
+    use std::process::{Command, Stdio};
+    let program = assert_cmd::cargo::cargo_bin("kinstep");
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = Command::new(&program).args(["formula", "list"]).stdout(full).output().unwrap();
+    assert_eq!(output.status.code(), Some(6));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("standard output can not be written"));
+
+    let mut child = Command::new(&program)
+        .args(["formula", "list"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));
+}
+
+#[test]
+fn usage_is_exit_2_in_both_forms() {
+    for arguments in [&["plann"][..], &["plan", "--sett", "a=1"], &["robot", "fk"], &["schema", "arms"], &[]]
+    {
+        let run = kinstep(arguments).expect(2);
+        assert_eq!(run.out, "");
+        assert!(run.err.starts_with("error: "), "{}", run.err);
+        let error = kinstep(&[arguments, &["--json"]].concat()).expect(2).error();
+        assert_eq!(error["kind"], "usage");
+    }
+}
+
+#[test]
+fn help_and_version_are_exit_0_and_help_has_examples() {
+    assert!(kinstep(&["--version"]).expect(0).out.starts_with("kinstep "));
+    for arguments in [
+        &["--help"][..],
+        &["plan", "--help"],
+        &["reproduce", "--help"],
+        &["formula", "show", "--help"],
+        &["formula", "check", "--help"],
+        &["robot", "show", "--help"],
+        &["robot", "check", "--help"],
+        &["robot", "fk", "--help"],
+        &["robot", "jacobian", "--help"],
+        &["schema", "--help"],
+    ] {
+        let help = kinstep(arguments).expect(0).out;
+        assert!(help.contains("Example"), "{arguments:?}\n{help}");
+    }
+}
+
+#[test]
+fn schemas_are_json_and_know_the_keys() {
+    let scenario = kinstep(&["schema", "scenario"]).expect(0).json();
+    assert_eq!(scenario["additionalProperties"], false);
+    for key in ["sigma", "duration", "formula", "arm"] {
+        assert!(scenario["required"].as_array().unwrap().contains(&key.into()), "{key}");
+    }
+    assert!(scenario["properties"]["sigma"]["description"].as_str().unwrap().contains("[s]"));
+    let formula = kinstep(&["schema", "formula", "--json"]).expect(0).json();
+    assert!(formula["$defs"]["Row"]["properties"]["error_constant"].is_object());
+}
