@@ -12,7 +12,7 @@ use cli::kinstep_in;
 fn every_bad_scenario_is_refused_in_the_words_beside_it() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bad_input/scenario");
     let mut count = 0;
-    let mut wrong = String::new();
+    let mut wrong = Vec::new();
     for entry in std::fs::read_dir(&folder).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|extension| extension != "toml") {
@@ -30,12 +30,12 @@ fn every_bad_scenario_is_refused_in_the_words_beside_it() {
         assert_ne!(run.code, 0, "{name} should be refused");
         assert_eq!(run.out, "", "{name}: a refusal goes to standard error");
         if said != expected {
-            wrong += &format!("--- {name}, expected\n{expected}\n--- got\n{said}\n");
+            wrong.push(format!("--- {name}, expected\n{expected}\n--- got\n{said}"));
         }
         let json = kinstep_in(&folder, &["plan", name, "--json"]);
         assert_eq!(json.code, run.code, "{name}");
         json.error();
     }
-    assert!(wrong.is_empty(), "{wrong}");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(count > 50, "only {count} files were found");
 }

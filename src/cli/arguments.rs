@@ -49,12 +49,16 @@ Setting one of law.h and law.gain takes the other away.")]
     #[command(after_help = "Examples:\n  kinstep reproduce\n  kinstep reproduce --out paper --json")]
     Reproduce(ReproduceArguments),
     /// Look at difference formulas: list, show, check rows of your own
-    #[command(subcommand)]
+    #[command(
+        subcommand,
+        after_help = "Example:\n  kinstep formula show --difference 24,-5,-12,-6,-4,3 --denominator 48"
+    )]
     Formula(FormulaCommand),
     /// Look at robots: list, show, check, pose and Jacobian
-    #[command(subcommand)]
+    #[command(subcommand, after_help = "Example:\n  kinstep robot show panda")]
     Robot(RobotCommand),
     /// Print the JSON Schema of a kind of file
+    #[command(after_help = "Example:\n  kinstep schema scenario > scenario.schema.json")]
     Schema(SchemaArguments),
 }
 
@@ -90,6 +94,7 @@ pub(super) struct ReproduceArguments {
 #[derive(Debug, Subcommand)]
 pub(super) enum FormulaCommand {
     /// List the formulas: built-in ones and those of --formulas
+    #[command(after_help = "Examples:\n  kinstep formula list\n  kinstep formula list --formulas mine.toml")]
     List,
     /// Show formulas in full, by id or typed at the prompt
     #[command(after_help = "\
@@ -148,6 +153,7 @@ pub(super) struct FormulaCheck {
 #[derive(Debug, Subcommand)]
 pub(super) enum RobotCommand {
     /// List the robots that come with the program
+    #[command(after_help = "Example:\n  kinstep robot list")]
     List,
     /// Show a robot's links, joints and limits
     #[command(

@@ -44,11 +44,13 @@ pub(super) struct Failure {
     pub(super) message: String,
     pub(super) file: Option<String>,
     pub(super) place: Option<Box<Place>>,
+    /// What else is wrong, where a command lists everything.
+    pub(super) also: Vec<Failure>,
 }
 
 impl Failure {
     pub(super) fn new(exit: Exit, message: impl Into<String>) -> Self {
-        Self { exit, message: message.into(), file: None, place: None }
+        Self { exit, message: message.into(), file: None, place: None, also: Vec::new() }
     }
 
     pub(super) fn usage(message: impl Into<String>) -> Self {
@@ -70,6 +72,6 @@ impl From<ScenarioError> for Failure {
             ErrorKind::File => Exit::File,
         };
         let file = error.place.as_ref().and_then(|place| place.file.clone()).or(error.file);
-        Self { exit, message: error.message, file, place: error.place }
+        Self { exit, message: error.message, file, place: error.place, also: Vec::new() }
     }
 }

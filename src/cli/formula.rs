@@ -7,7 +7,7 @@ use super::failure::{Exit, Failure};
 use super::formula_card::{Card, Cards, FormulaList};
 use super::output::Output;
 use crate::formula::{DefectKind, FormulaTable, Row, Strictness, read_rows};
-use crate::scenario::{read_text, refused_rows};
+use crate::scenario::{read_text, row_refusals};
 
 /// What a row that is typed at the prompt is called.
 const TYPED: &str = "typed";
@@ -91,5 +91,9 @@ fn check(arguments: &FormulaCheck, output: &mut Output) -> Result<Exit, Failure>
 
 fn rows_of(file: &Path, strictness: Strictness) -> Result<Vec<Row>, Failure> {
     let text = read_text(file)?;
-    read_rows(&text, strictness).map_err(|error| refused_rows(&error, file, &text).into())
+    read_rows(&text, strictness).map_err(|error| {
+        let mut all = row_refusals(&error, file, &text).into_iter().map(Failure::from);
+        let first = all.next().unwrap_or_else(|| Failure::new(Exit::Formula, error.to_string()));
+        Failure { also: all.collect(), ..first }
+    })
 }

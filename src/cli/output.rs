@@ -77,22 +77,32 @@ impl Output {
                 self.remark(&failure.message);
             }
         } else {
-            self.remark(&failure_text(failure, paints_errors()));
+            for failure in std::iter::once(failure).chain(&failure.also) {
+                self.remark(&failure_text(failure, paints_errors()));
+            }
         }
         exit
     }
 }
 
 fn failure_document(failure: &Failure) -> Value {
+    let mut document = error_document(failure);
+    if !failure.also.is_empty() {
+        document["also"] = failure.also.iter().map(error_document).collect();
+    }
+    json!({ "error": document })
+}
+
+fn error_document(failure: &Failure) -> Value {
     let place = failure.place.as_ref();
-    json!({ "error": {
+    json!({
         "code": failure.exit as u8,
         "kind": failure.exit.word(),
         "message": failure.message,
         "file": failure.file,
         "line": place.map(|place| place.line),
         "column": place.map(|place| place.column),
-    } })
+    })
 }
 
 /// `file:line:column: sentence`, and below it the line with a caret.

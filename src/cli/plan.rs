@@ -46,7 +46,7 @@ pub(super) fn run(
         output.text(&format!(
             "{head}{}{}",
             written(&PlanText, &plan),
-            closing(arguments, &plan, &table, scenario.duration.value())
+            closing(arguments, &plan, &table, &scenario)
         ))?;
     }
     Ok(exit(&plan))
@@ -94,7 +94,7 @@ fn exit(plan: &Plan) -> Exit {
 }
 
 /// Where the files are, and what to try next.
-fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, duration: f64) -> String {
+fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, scenario: &Scenario) -> String {
     let name = arguments.scenario.as_ref().map_or_else(String::new, |file| format!(" {}", file.display()));
     let mut next = Vec::new();
     let mut written = String::new();
@@ -102,7 +102,7 @@ fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, duratio
         Some(folder) => written = format!("\nWritten to {}: {}.\n", folder.display(), NAMES.join(", ")),
         None => next.push(("--out results".to_owned(), "the trajectory as a file".to_owned())),
     }
-    next.extend(suggestions(plan, table, duration));
+    next.extend(suggestions(plan, table, scenario));
     let mut lines: Vec<[String; 2]> =
         next.into_iter().map(|(arguments, why)| [format!("kinstep plan{name} {arguments}"), why]).collect();
     if arguments.scenario.is_none() {
@@ -115,7 +115,7 @@ fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, duratio
 }
 
 /// What would make this plan better, as arguments and the reason.
-fn suggestions(plan: &Plan, table: &FormulaTable, duration: f64) -> Vec<(String, String)> {
+fn suggestions(plan: &Plan, table: &FormulaTable, scenario: &Scenario) -> Vec<(String, String)> {
     let mut next = Vec::new();
     let Ok(formula) = table.get(&plan.formula) else { return next };
     let best = formula.optimum().map(|optimum| format!("{:.3}", optimum.h));
@@ -128,18 +128,16 @@ fn suggestions(plan: &Plan, table: &FormulaTable, duration: f64) -> Vec<(String,
         return next;
     }
     if let Some(excess) = velocity_excess(plan) {
-        let longer = (duration * excess * 1.05).ceil();
+        let longer = (scenario.duration.value() * excess * 1.05).ceil();
         next.push((
             format!("--set duration={longer}"),
             "slow enough for the joints' velocity limits".to_owned(),
         ));
     }
-    let fold = 1_u64 << (formula.order() + 1).min(60);
-    let finer = plan.sigma / 2.0;
-    next.push((
-        format!("--set sigma={finer}"),
-        format!("errors about {fold} times smaller: order {}", formula.order()),
-    ));
+    let halvings = formula.order() + usize::from(scenario.law.gain.is_none());
+    let (fold, held) = (1_u64 << halvings.min(60), if scenario.law.gain.is_some() { "gain" } else { "h" });
+    let why = format!("errors about {fold} times smaller: order {} at the same {held}", formula.order());
+    next.push((format!("--set sigma={}", plan.sigma / 2.0), why));
     if plan.formula != "split-ab6" {
         let arguments = "--set formula=split-ab6 --set law.h=1 --set start=rk8".to_owned();
         next.push((arguments, "a deadbeat loop of order 6".to_owned()));

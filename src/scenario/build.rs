@@ -11,7 +11,7 @@ use super::model::{ArmSpec, LawKind, Mount, Scenario, Start, TaskKind};
 use super::path_spec::{PathKind, PathSpec, Plane, TimeLawKind};
 use super::real::Real;
 use super::robots::RobotSource;
-use crate::formula::{Formula, FormulaTable, TableError};
+use crate::formula::{Defect, Formula, FormulaTable, TableError};
 use crate::law::Pseudoinverse;
 use crate::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
 use crate::robot::{Chain, UrdfOptions};
@@ -28,19 +28,29 @@ pub fn with_formulas(table: &FormulaTable, file: &Path) -> Result<FormulaTable, 
     more.map_err(|e| refused_rows(&e, file, &text))
 }
 
-/// Returns the refusal of a file of rows, with the place of the first defect.
-pub(crate) fn refused_rows(error: &TableError, file: &Path, text: &str) -> ScenarioError {
-    let label = file.display().to_string();
-    let Some(first) = error.defects().first() else {
-        return ScenarioError::new(ErrorKind::Formula, format!("{label}: {error}"));
+/// Returns the refusal of a file of rows: its first defect, and how many there are.
+fn refused_rows(error: &TableError, file: &Path, text: &str) -> ScenarioError {
+    let mut all = row_refusals(error, file, text);
+    let count = all.len();
+    if count == 0 {
+        return ScenarioError::new(ErrorKind::Formula, format!("{}: {error}", file.display()));
+    }
+    let mut first = all.swap_remove(0);
+    if count > 1 {
+        first.message = format!("{} ({count} problems; `kinstep formula check` lists them)", first.message);
+    }
+    first
+}
+
+/// Returns the refusals of everything that is wrong with a file of rows, in the order of the file.
+pub(crate) fn row_refusals(error: &TableError, file: &Path, text: &str) -> Vec<ScenarioError> {
+    let refusal = |defect: &Defect| {
+        let row = defect.row.as_ref().map_or_else(String::new, |id| format!("formula \"{id}\": "));
+        let (line, column) = (defect.place.line.max(1), defect.place.column.max(1));
+        let place = Place::of_line(Some(file.display().to_string()), text, line, column);
+        ScenarioError::new(ErrorKind::Formula, format!("{row}{}", defect.kind)).or_placed(Some(place))
     };
-    let row = first.row.as_ref().map_or_else(String::new, |id| format!("formula \"{id}\": "));
-    let more = match error.defects().len() {
-        1 => String::new(),
-        count => format!(" ({count} problems; `kinstep formula check` lists them)"),
-    };
-    let place = Place::of_line(Some(label), text, first.place.line.max(1), first.place.column.max(1));
-    ScenarioError::new(ErrorKind::Formula, format!("{row}{}{more}", first.kind)).or_placed(Some(place))
+    error.defects().iter().map(refusal).collect()
 }
 
 impl Scenario {

@@ -28,6 +28,6 @@ pub use real::Real;
 pub use robots::RobotSource;
 
 #[cfg(feature = "cli")]
-pub(crate) use build::refused_rows;
+pub(crate) use build::row_refusals;
 #[cfg(feature = "cli")]
 pub(crate) use document::read_text;
