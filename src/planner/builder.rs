@@ -2,6 +2,7 @@ use super::field::{ArmRuntime, SynchronousField};
 use super::{Arm, Planner, PlannerError};
 use crate::formula::{Formula, FormulaTable};
 use crate::integrate::{Multistep, Starter};
+use crate::robot::LimitViolation;
 use num_traits::ToPrimitive;
 use std::collections::HashSet;
 
@@ -290,15 +291,13 @@ fn check_initial(arm: &Arm) -> Result<(), PlannerError> {
         return Err(PlannerError::InitialLength { arm: name(), got, expected, joints });
     }
     for (joint, &value) in joints.iter().zip(&arm.q0) {
-        let joint_name = || joint.name.clone();
         if !value.is_finite() {
-            return Err(PlannerError::InitialNonFinite { arm: name(), joint: joint_name(), value });
+            return Err(PlannerError::InitialNonFinite { arm: name(), joint: joint.name.clone(), value });
         }
-        let (lower, upper) = (joint.limits.lower, joint.limits.upper);
-        if value < lower || value > upper {
-            let (arm, joint) = (name(), joint_name());
-            return Err(PlannerError::InitialOutsideLimits { arm, joint, value, lower, upper });
-        }
+    }
+    if let Some(violation) = arm.chain.limit_violations(&arm.q0).next() {
+        let LimitViolation { joint, value, lower, upper, .. } = violation;
+        return Err(PlannerError::InitialOutsideLimits { arm: name(), joint, value, lower, upper });
     }
     Ok(())
 }
