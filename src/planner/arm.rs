@@ -39,6 +39,11 @@ impl Arm {
         &self.name
     }
 
+    /// The chain it moves, mounted in the world.
+    pub fn chain(&self) -> &Chain {
+        &self.chain
+    }
+
     /// The names of the joints it moves, in the order of their positions.
     pub(super) fn joint_names(&self) -> Vec<String> {
         self.chain.joints().iter().map(|joint| joint.name.clone()).collect()

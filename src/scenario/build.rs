@@ -82,6 +82,7 @@ impl Scenario {
         let formula = self.formula_of(table)?;
         let arms: Vec<Arm> =
             self.arm.iter().map(|arm| self.build_arm(arm, folder)).collect::<Result<_, _>>()?;
+        self.check_shared_joints(&arms)?;
         self.builder(formula).arms(arms).build().map_err(|e| self.refused(&e))
     }
 
@@ -121,6 +122,30 @@ impl Scenario {
             (LawKind::Pseudoinverse, None) => arm,
             (LawKind::Pseudoinverse, Some(t)) => arm.with_law(Pseudoinverse::new().with_threshold(t.value())),
         })
+    }
+
+    /// Refuses two arms that would move one joint of one robot in two ways.
+    ///
+    /// Arms of the same robot at the same place are one machine; at different mounts they are two of a kind.
+    fn check_shared_joints(&self, arms: &[Arm]) -> Result<(), ScenarioError> {
+        for (i, (spec, arm)) in self.arm.iter().zip(arms).enumerate() {
+            for (other_spec, other) in self.arm.iter().zip(arms).take(i) {
+                let same_machine = spec.robot == other_spec.robot && spec.mount == other_spec.mount;
+                let shared = arm.chain().joints().iter().map(|joint| &joint.name);
+                let mut shared =
+                    shared.filter(|name| other.chain().joints().iter().any(|j| &&j.name == name));
+                if let Some(joint) = shared.next().filter(|_| same_machine) {
+                    let text = format!(
+                        "arms `{}` and `{}` both move joint `{joint}` of one robot, each in its own way; give them a \
+                         `base` beyond that joint, or different mounts if there are two such robots",
+                        other_spec.name, spec.name
+                    );
+                    let at = KeyPath::dotted("arm").key(&spec.name).key("base");
+                    return Err(ScenarioError::at(ErrorKind::Scenario, &at, text));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Returns the planner's refusal with the key that it is about.
