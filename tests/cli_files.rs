@@ -54,6 +54,14 @@ fn what_can_not_be_read_or_written_is_exit_6_with_the_file() {
 
 #[cfg(target_os = "linux")]
 #[test]
+fn a_device_without_end_is_refused() {
+    kinstep(&["plan", "/dev/zero"]).expect(6);
+    kinstep(&["plan", "--formulas", "/dev/zero"]).expect(6);
+    kinstep(&["robot", "show", "/dev/zero"]).expect(3);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
 fn a_full_disk_is_a_sentence_and_a_closed_pipe_is_silent() {
     use std::process::{Command, Stdio};
     let program = assert_cmd::cargo::cargo_bin("kinstep");

@@ -1,5 +1,7 @@
 //! The text of a scenario: where its keys stand, and what is laid over it from outside.
 
+use std::fs::File;
+use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -243,20 +245,19 @@ pub(crate) fn read_text(file: &Path) -> Result<String, ScenarioError> {
             _ => format!("it can not be read: {e}"),
         })
     };
-    let meta = std::fs::metadata(file).map_err(|e| unreadable(&e))?;
-    if meta.is_dir() {
-        return Err(refuse("this is a folder, not a file".to_owned()));
-    }
-    if meta.len() > MAX_BYTES {
-        return Err(refuse(format!(
-            "{} bytes are more than a file of this kind can have ({MAX_BYTES})",
-            meta.len()
-        )));
-    }
-    let bytes = std::fs::read(file).map_err(|e| unreadable(&e))?;
+    let bytes = read_bounded(file, MAX_BYTES).map_err(|e| unreadable(&e))?;
+    let bytes = bytes
+        .ok_or_else(|| refuse(format!("more than {MAX_BYTES} bytes, which is no file that people write")))?;
     String::from_utf8(bytes).map_err(|e| {
         refuse(format!("byte {} is not UTF-8; save the file as UTF-8", e.utf8_error().valid_up_to() + 1))
     })
+}
+
+/// Returns the bytes of a file, or nothing where there are more than `most`; a device without end is no danger.
+pub(super) fn read_bounded(file: &Path, most: u64) -> std::io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    File::open(file)?.take(most + 1).read_to_end(&mut bytes)?;
+    Ok(Some(bytes).filter(|bytes| bytes.len() as u64 <= most))
 }
 
 fn display(file: &Path) -> String {

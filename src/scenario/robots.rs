@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use super::document::read_bounded;
 use super::error::{ErrorKind, Place, ScenarioError, suggestion};
-use crate::robot::{ReadError, Robot, UrdfOptions, embedded};
+use crate::robot::{MAX_BYTES, ReadError, Robot, UrdfOptions, embedded};
 
 /// Where a robot's URDF comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -67,7 +68,10 @@ impl RobotSource {
     pub fn place(&self, line: usize, column: usize) -> Place {
         let text = match self {
             Self::Embedded(name) => embedded::text(name).unwrap_or_default().to_owned(),
-            Self::File(path) => std::fs::read_to_string(path).unwrap_or_default(),
+            Self::File(path) => {
+                let bytes = read_bounded(path, MAX_BYTES as u64).ok().flatten().unwrap_or_default();
+                String::from_utf8(bytes).unwrap_or_default()
+            }
         };
         Place::of_line(Some(self.label()), &text, line, column)
     }
