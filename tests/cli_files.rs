@@ -124,7 +124,7 @@ fn schemas_are_json_and_know_the_keys() {
     for key in ["sigma", "duration", "formula", "arm"] {
         assert!(scenario["required"].as_array().unwrap().contains(&key.into()), "{key}");
     }
-    assert!(scenario["properties"]["sigma"]["description"].as_str().unwrap().contains("[s]"));
+    assert!(scenario["properties"]["sigma"]["description"].as_str().unwrap().contains("in s"));
     let formula = kinstep(&["schema", "formula", "--json"]).expect(0).json();
     assert!(formula["$defs"]["Row"]["properties"]["error_constant"].is_object());
 }

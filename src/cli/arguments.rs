@@ -180,7 +180,7 @@ pub(super) struct RobotFile {
     #[arg(value_name = "FILE")]
     pub(super) robot: String,
 
-    /// Take joints without a <limit> as unlimited instead of defective
+    /// Take joints without a limit element as unlimited instead of defective
     #[arg(long)]
     pub(super) assume_unlimited: bool,
 
@@ -202,7 +202,7 @@ pub(super) struct ChainArguments {
     #[arg(long, value_name = "LINK")]
     pub(super) tip: String,
 
-    /// Joint positions in path order [rad or m], separated by commas; expressions in pi are read
+    /// Joint positions in path order in rad or m, separated by commas; expressions in pi are read
     #[arg(long, value_name = "Q,...", allow_hyphen_values = true)]
     pub(super) q: String,
 }

@@ -10,9 +10,9 @@ use super::real::{Real, exactly};
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
-    /// Sampling gap [s]. Where it does not divide `duration` it is adjusted so that it does, with a warning.
+    /// Sampling gap in s. Where it does not divide `duration` it is adjusted so that it does, with a warning.
     pub sigma: Real,
-    /// Length of the motion [s].
+    /// Length of the motion in s.
     pub duration: Real,
     /// Id of the formula row, built-in or from `formulas`.
     pub formula: String,
@@ -59,7 +59,7 @@ pub struct LawSpec {
     /// Feedback step h, dimensionless: held fixed, the task error falls like sigma^(p+1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub h: Option<Real>,
-    /// Feedback gain k [1/s]: h = sigma k gamma(1).
+    /// Feedback gain k in 1/s: h = sigma k gamma(1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<Real>,
     /// Smallest singular value of the task Jacobian that is inverted undamped; below it the inverse is damped,
@@ -93,7 +93,7 @@ pub struct ArmSpec {
     pub tip: String,
     /// What of the tip follows the path.
     pub task: TaskKind,
-    /// Joint positions at the start [rad] or [m], one per joint of the chain in its order.
+    /// Joint positions at the start in rad or m, one per joint of the chain in its order.
     pub q0: Vec<Real>,
     /// Pose of `base` in the world. Default: the world's own.
     #[serde(default, skip_serializing_if = "Mount::is_identity")]
@@ -120,10 +120,10 @@ pub enum TaskKind {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Mount {
-    /// Position [m].
+    /// Position in m.
     #[serde(default = "zeros", deserialize_with = "exactly")]
     pub xyz: [Real; 3],
-    /// Roll, pitch and yaw about fixed axes [rad], as in URDF.
+    /// Roll, pitch and yaw about fixed axes in rad, as in URDF.
     #[serde(default = "zeros", deserialize_with = "exactly")]
     pub rpy: [Real; 3],
 }

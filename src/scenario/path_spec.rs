@@ -12,40 +12,40 @@ use super::real::{Real, exactly, some_exactly};
 pub struct PathSpec {
     /// Kind of curve.
     pub kind: PathKind,
-    /// Size of a circle, tricuspid, astroid or rose [m].
+    /// Size of a circle, tricuspid, astroid or rose in m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<Real>,
     /// Number of petals parameter of a rose: radius * cos(petals * a).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub petals: Option<Real>,
-    /// End of a line in world coordinates [m], 2 or 3 of them.
+    /// End of a line in world coordinates in m, 2 or 3 of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<Vec<Real>>,
-    /// End of a line from its beginning, along world axes [m], 2 or 3 of them.
+    /// End of a line from its beginning, along world axes in m, 2 or 3 of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacement: Option<Vec<Real>>,
-    /// Half width and half height of a Lissajous curve [m].
+    /// Half width and half height of a Lissajous curve in m.
     #[serde(default, deserialize_with = "some_exactly", skip_serializing_if = "Option::is_none")]
     pub amplitudes: Option<[Real; 2]>,
     /// Periods of a Lissajous curve per turn of the angle, in x and in y.
     #[serde(default, deserialize_with = "some_exactly", skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<[Real; 2]>,
-    /// Phase of the x part of a Lissajous curve [rad]. Default: 0.
+    /// Phase of the x part of a Lissajous curve in rad. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phase: Option<Real>,
     /// Plane that the curve is drawn in, in world axes. Default: xy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane: Option<Plane>,
-    /// Turn of the curve in its plane [rad]. Default: 0.
+    /// Turn of the curve in its plane in rad. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Real>,
-    /// Angle at which the curve begins [rad]. Default: 0.
+    /// Angle at which the curve begins in rad. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<Real>,
-    /// Angle that the curve sweeps, with its sign [rad]. Default: 2 pi.
+    /// Angle that the curve sweeps, with its sign in rad. Default: 2 pi.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sweep: Option<Real>,
-    /// Centre of the curve in world coordinates [m], 2 or 3 of them. Default: such that the curve begins at the tip.
+    /// Centre of the curve in world coordinates in m, 2 or 3 of them. Default: such that the curve begins at the tip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub center: Option<Vec<Real>>,
     /// How the path is travelled in time. Default: sin2.
@@ -111,7 +111,7 @@ pub struct TurnSpec {
     /// Axis in world coordinates; its length does not matter, but it must have one.
     #[serde(deserialize_with = "exactly")]
     pub axis: [Real; 3],
-    /// Angle of the whole turn [rad].
+    /// Angle of the whole turn in rad.
     pub angle: Real,
 }
 
