@@ -5,6 +5,7 @@ use kinstep::formula::{
 };
 use kinstep::math::{Rational, parse_rational};
 use num_traits::Zero;
+use proptest::prelude::*;
 
 fn builtin() -> impl Iterator<Item = &'static Formula> {
     FormulaTable::builtin().iter()
@@ -359,4 +360,86 @@ fn forty_steps_and_four_hundred_digits_are_analysed() {
     let beta = format!("0,1{digits}");
     let formula = Row::from_weights("long", &alpha, &beta, None).expect("readable").check().into_formula();
     assert_eq!(formula.expect("Euler in disguise").feedback_range().exact(), Some(number("2")));
+}
+
+/// A consistent row of random small fractions: (z - 1) times factors with roots inside the circle, feedback weights at random.
+fn random_row() -> impl Strategy<Value = Formula> {
+    let inside = proptest::collection::vec((-6_i64..=6, 7_i64..=9), 1..5);
+    let weights = proptest::collection::vec(-3_i64..=6, 6);
+    (inside, weights).prop_filter_map("weights that cancel", |(roots, weights)| {
+        let mut alpha = vec![number("1"), number("-1")];
+        for (n, d) in roots {
+            let root = Rational::new(n.into(), d.into());
+            alpha.push(Rational::zero());
+            for j in (1..alpha.len()).rev() {
+                let shifted = &alpha[j - 1] * &root;
+                alpha[j] -= shifted;
+            }
+        }
+        // rho'(1) = sum of (s - j) alpha_j is what beta has to sum to.
+        let slope: Rational =
+            (0_i64..).zip(&alpha).map(|(j, a)| a * Rational::from_integer((1 - j).into())).sum();
+        let weights: Vec<Rational> = (0..alpha.len())
+            .map(|j| Rational::from_integer((if j == 0 { 0 } else { weights[j % 6] }).into()))
+            .collect();
+        let sum: Rational = weights.iter().sum();
+        if sum.is_zero() || slope.is_zero() {
+            return None;
+        }
+        let beta = weights.iter().map(|w| w * &slope / &sum).collect();
+        Row::new("random", Coefficients::General { alpha, beta, gamma: None })
+            .ok()?
+            .check()
+            .into_formula()
+            .ok()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn a_random_range_ends_where_the_radius_reaches_one(row in random_row()) {
+        prop_assert_eq!(row.root_condition(), RootCondition::StrictlyStable);
+        let range = row.feedback_range();
+        prop_assert!(!range.is_empty(), "small h moves the root 1 inwards: {:?}", row.alpha());
+        let end = range.value().min(1e3);
+        for part in [1e-3, 0.2, 0.5, 0.8, 0.98] {
+            prop_assert!(row.spectral_radius(end * part) < 1.0, "r({}) with {range}", end * part);
+        }
+        if !range.is_unbounded() {
+            prop_assert!((row.spectral_radius(range.value()) - 1.0).abs() < 1e-6, "{}", range);
+        }
+        if let Some(best) = row.optimum() {
+            prop_assert!(range.contains(best.h));
+            for part in 1..60 {
+                let h = end * f64::from(part) / 60.0;
+                prop_assert!(row.spectral_radius(h) > best.radius - 1e-9, "r({h}) is below {best:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn random_noise_gains_are_those_of_the_simulated_loop(row in random_row(), part in 0.1_f64..0.9) {
+        let h = row.feedback_range().value().min(10.0) * part;
+        prop_assume!(row.spectral_radius(h) < 0.97);
+        let gain = row.noise_gain(h).expect("inside the range");
+        let as_f64 = |list: &[Rational]| list.iter().map(kinstep::math::rational_to_f64).collect::<Vec<_>>();
+        let (alpha, beta, gamma) = (as_f64(row.alpha()), as_f64(row.beta()), as_f64(row.gamma()));
+        let sum: f64 = gamma.iter().sum();
+        let closed: Vec<f64> = alpha.iter().zip(&gamma).map(|(a, g)| a + h * g / sum).collect();
+        let norm = |input: &dyn Fn(usize) -> f64| {
+            let mut response: Vec<f64> = Vec::new();
+            for n in 0..3000 {
+                let past: f64 = (1..closed.len().min(n + 1)).map(|j| closed[j] * response[n - j]).sum();
+                response.push((if n < closed.len() { input(n) } else { 0.0 }) - past);
+            }
+            response.iter().map(|e| e * e).sum::<f64>().sqrt()
+        };
+        let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.max(1e-3);
+        prop_assert!(close(gain.residual, norm(&|j| -h * gamma[j] / sum)));
+        prop_assert!(close(gain.feedforward_per_sigma, norm(&|j| beta[j])));
+        let state = norm(&|j| if j == 0 { 0.0 } else { -closed[j] });
+        prop_assert!(close(gain.state, state));
+    }
 }

@@ -4,11 +4,12 @@ use std::cmp::Ordering;
 use std::fmt;
 
 use num_bigint::BigInt;
+use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 
 use crate::math::{
     Polynomial, Rational, RealRoot, common_denominator, half_plane_image, is_schur, last_hurwitz_determinant,
-    positive_roots, rational_from_f64, rational_to_f64,
+    positive_roots, rational_from_f64, rational_roots, rational_to_f64,
 };
 
 /// The closed loop of a row: pi_h(z) = rho(z) + h gamma(z)/gamma(1), as an exact polynomial for every exact h.
@@ -99,15 +100,16 @@ impl End {
         }
     }
 
-    /// The same end, written as a fraction where it is one, else narrowed.
-    fn settled(self) -> Self {
-        let Self::Algebraic(mut root) = self else { return self };
-        if let Some(value) = root.rational_value() {
-            return Self::Rational(value);
+    /// The same end, an irrational one narrowed to less than 1e-18 of its size.
+    fn narrowed(mut self) -> Self {
+        if let Self::Algebraic(root) = &mut self {
+            let mut width = Rational::one();
+            while root.compare(&width) == Ordering::Less {
+                width /= Rational::from_integer(2.into());
+            }
+            root.refine(&(width / Rational::from_integer(BigInt::from(10).pow(18))));
         }
-        let width = root.interval().1 / Rational::from_integer(BigInt::from(10).pow(19));
-        root.refine(&width);
-        Self::Algebraic(root)
+        self
     }
 }
 
@@ -122,15 +124,15 @@ impl FeedbackRange {
         let Some((crossing, pairs)) = stability_boundary(&moving).filter(|_| is_schur(&fixed)) else {
             return Self { end: End::Empty };
         };
-        let touching = positive_roots(&pairs).into_iter().next();
-        let first = match (crossing.map(End::Rational), touching.map(End::Algebraic)) {
-            (Some(End::Rational(h)), Some(End::Algebraic(root))) if root.compare(&h) == Ordering::Less => {
-                End::Algebraic(root)
-            }
-            (Some(crossing), _) => crossing,
-            (None, touching) => touching.unwrap_or(End::Unbounded),
+        let (fractions, rest) = without_rational_roots(&pairs);
+        let fraction = fractions.into_iter().chain(crossing).filter(Signed::is_positive).min();
+        let first = match (fraction, positive_roots(&rest).into_iter().next()) {
+            (Some(h), Some(root)) if root.compare(&h) == Ordering::Greater => End::Rational(h),
+            (_, Some(root)) => End::Algebraic(root),
+            (Some(h), None) => End::Rational(h),
+            (None, None) => End::Unbounded,
         };
-        let end = if is_schur(&moving.at(&first.point_below())) { first.settled() } else { End::Empty };
+        let end = if is_schur(&moving.at(&first.point_below())) { first.narrowed() } else { End::Empty };
         Self { end }
     }
 
@@ -154,6 +156,8 @@ impl FeedbackRange {
     }
 
     /// Returns the integer polynomial in h of which an irrational h_max is a root, such as `32 h^2 + 108 h - 81`.
+    ///
+    /// It is primitive, has no repeated and no rational roots; factors of higher degree are not looked for.
     pub fn polynomial(&self) -> Option<String> {
         match &self.end {
             End::Algebraic(root) => Some(root.polynomial().to_text("h")),
@@ -208,7 +212,7 @@ impl fmt::Display for FeedbackRange {
     }
 }
 
-/// The positive h that puts a root at z = -1, if any, and a polynomial whose positive zeros include every h at which a pair of
+/// The h that puts a root at z = -1, if any, and a polynomial whose positive zeros include every h at which a pair of
 /// roots is on the circle; `None` when no h is stable.
 fn stability_boundary(closed_loop: &ClosedLoop) -> Option<(Option<Rational>, Polynomial)> {
     let minus_one = -Rational::one();
@@ -216,10 +220,18 @@ fn stability_boundary(closed_loop: &ClosedLoop) -> Option<(Option<Rational>, Pol
     let crossing = match (constant.is_zero(), slope.is_zero()) {
         (true, true) => return None,
         (_, true) => None,
-        (_, false) => Some(-constant / slope).filter(Signed::is_positive),
+        (_, false) => Some(-constant / slope),
     };
     let pairs = pair_polynomial(closed_loop, closed_loop.degree())?;
     (!pairs.is_zero()).then_some((crossing, pairs))
+}
+
+/// The rational roots of a polynomial, and its square-free part without them.
+fn without_rational_roots(polynomial: &Polynomial) -> (Vec<Rational>, Polynomial) {
+    let fractions = rational_roots(polynomial);
+    let square_free = polynomial.square_free_part();
+    let rest = fractions.iter().fold(square_free, |rest, fraction| rest.without_root(fraction).0);
+    (fractions, rest)
 }
 
 /// The Hurwitz determinant of order n - 1 as a polynomial in h, by values at small integers.
@@ -241,26 +253,59 @@ fn pair_polynomial(closed_loop: &ClosedLoop, n: usize) -> Option<Polynomial> {
 }
 
 /// The primitive multiple of the polynomial of least degree through the samples (Newton's divided differences).
+///
+/// Differences of order k are kept multiplied by a common multiple of all gaps so far, so that everything stays an integer.
 fn interpolate(samples: &[(i64, BigInt)]) -> Polynomial {
-    let mut differences: Vec<Rational> =
-        samples.iter().map(|(_, value)| Rational::from_integer(value.clone())).collect();
+    let mut differences: Vec<BigInt> = samples.iter().map(|(_, value)| value.clone()).collect();
+    let mut multiples = vec![BigInt::one()];
     for order in 1..samples.len() {
+        let gap = |k: usize| BigInt::from(samples[k].0 - samples[k - order].0);
+        let multiple = (order..samples.len()).fold(BigInt::one(), |lcm, k| lcm.lcm(&gap(k)));
         for k in (order..samples.len()).rev() {
-            let gap = BigInt::from(samples[k].0 - samples[k - order].0);
-            differences[k] = (&differences[k] - &differences[k - 1]) / gap;
+            differences[k] = (&differences[k] - &differences[k - 1]) * (&multiple / gap(k));
+        }
+        multiples.push(multiple);
+    }
+    // Horner in the nodes; the differences of lower orders still lack the multiples of the higher ones.
+    let (mut polynomial, mut scale) = (Polynomial::default(), BigInt::one());
+    for ((difference, multiple), (node, _)) in differences.iter().zip(&multiples).zip(samples).rev() {
+        let factor = Polynomial::from_ascending([-node, 1]);
+        polynomial = &(&polynomial * &factor) + &Polynomial::constant(difference * &scale);
+        scale *= multiple;
+    }
+    polynomial.primitive_part()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polynomial_is_found_again_from_its_values() {
+        let p = Polynomial::from_descending(&[32, 108, -81, 0, 7]);
+        let nodes = [1, -1, 2, 5, -3];
+        let value = |node: i64| p.value_at(&Rational::from_integer(node.into())).to_integer();
+        let samples: Vec<(i64, BigInt)> = nodes.into_iter().map(|node| (node, value(node))).collect();
+        assert_eq!(interpolate(&samples), p);
+    }
+
+    #[test]
+    fn a_loop_of_no_stable_h_has_an_empty_range() {
+        // Roots 1 and -1 that feedback pushes apart, a fixed root on the circle, and a palindromic loop for every h.
+        let row =
+            |numbers: &[i64]| numbers.iter().map(|n| Rational::from_integer((*n).into())).collect::<Vec<_>>();
+        for (alpha, gamma) in [([1, 0, -1], [0, 2, 0]), ([1, 0, -1], [0, 1, 1]), ([1, -2, 1], [0, 1, 0])] {
+            let range = FeedbackRange::of(&ClosedLoop::new(&row(&alpha), &row(&gamma)));
+            assert!(range.is_empty() && !range.contains(1e-9), "{alpha:?}: {range}");
         }
     }
-    // Horner in the nodes, ascending coefficients.
-    let mut ascending: Vec<Rational> = Vec::new();
-    for (difference, (node, _)) in differences.iter().zip(samples).rev() {
-        let node = Rational::from_integer((*node).into());
-        ascending.insert(0, Rational::zero());
-        for k in 0..ascending.len() - 1 {
-            let shifted = &ascending[k + 1] * &node;
-            ascending[k] -= shifted;
-        }
-        ascending[0] += difference;
+
+    #[test]
+    fn an_implicit_loop_may_be_unbounded() {
+        let row =
+            |numbers: &[i64]| numbers.iter().map(|n| Rational::from_integer((*n).into())).collect::<Vec<_>>();
+        let range = FeedbackRange::of(&ClosedLoop::new(&row(&[1, -1]), &row(&[1, 0])));
+        assert!(range.is_unbounded() && range.contains(1e300) && range.exact().is_none());
+        assert_eq!(range.to_string(), "(0, inf)");
     }
-    ascending.reverse();
-    Polynomial::from_rationals_descending(&ascending)
 }

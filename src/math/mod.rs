@@ -6,6 +6,7 @@ mod gram;
 mod modular;
 mod polynomial;
 mod rational;
+mod rational_roots;
 mod real_roots;
 mod root_condition;
 mod rotation;
@@ -20,6 +21,7 @@ pub use rational::{
     MAX_DIGITS, ParseRationalError, Rational, parse_rational, rational_from_f64, rational_to_f64,
     simplest_between,
 };
+pub use rational_roots::rational_roots;
 pub use real_roots::{RealRoot, positive_roots, real_roots_between};
 pub use root_condition::{RootCondition, root_condition};
 pub use rotation::rotation_vector;

@@ -6,7 +6,8 @@ use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
 use super::polynomial::{Polynomial, taylor_shift};
-use super::rational::{Rational, rational_to_f64, simplest_between};
+use super::rational::{Rational, rational_to_f64};
+use super::rational_roots::rational_roots;
 
 /// One real root: a square-free polynomial and an interval that holds exactly this root of it.
 #[derive(Debug, Clone)]
@@ -77,27 +78,9 @@ impl RealRoot {
         }
     }
 
-    /// Returns the root as a fraction when it is one, and narrows the interval on the way.
-    ///
-    /// A fraction p/q that is a root has q dividing the leading coefficient L, and two such fractions are at least 1/L^2
-    /// apart: the simplest fraction in an interval narrower than that is the root or there is none. The
-    /// search stops at 2^-4096; a root with a denominator beyond 2^2048 is treated as irrational.
-    pub fn rational_value(&mut self) -> Option<Rational> {
-        const WIDEST_SEARCH: u64 = 4096;
-        let enough = (2 * self.polynomial.leading().bits() + 1).min(WIDEST_SEARCH);
-        let mut bits = 64;
-        loop {
-            self.refine(&Rational::new(BigInt::one(), BigInt::one() << bits.min(enough)));
-            let candidate = simplest_between(&self.low, &self.high);
-            if self.polynomial.sign_at(&candidate) == 0 {
-                (self.low, self.high) = (candidate.clone(), candidate.clone());
-                return Some(candidate);
-            }
-            if bits >= enough {
-                return None;
-            }
-            bits *= 2;
-        }
+    /// Returns the root as a fraction when it is one.
+    pub fn rational_value(&self) -> Option<Rational> {
+        rational_roots(&self.polynomial).into_iter().find(|value| self.compare(value) == Ordering::Equal)
     }
 
     /// Returns the double nearest to the middle of an interval refined well below its spacing.
@@ -227,7 +210,7 @@ mod tests {
     fn recognises_fractions_and_leaves_the_others() {
         // (3z - 2)(z^2 - 2): roots 2/3 and sqrt 2.
         let p = &Polynomial::from_descending(&[3, -2]) * &Polynomial::from_descending(&[1, 0, -2]);
-        let mut roots = positive_roots(&p);
+        let roots = positive_roots(&p);
         assert_eq!(roots.len(), 2);
         assert_eq!(roots[0].rational_value(), Some(fraction(2, 3)));
         assert_eq!(roots[1].rational_value(), None);
@@ -275,8 +258,8 @@ mod tests {
             }
             roots.sort_by_key(|(n, d)| fraction(*n, *d));
             roots.dedup_by_key(|(n, d)| fraction(*n, *d));
-            let mut found = positive_roots(&product);
-            let exact: Vec<_> = found.iter_mut().map(RealRoot::rational_value).collect();
+            let found = positive_roots(&product);
+            let exact: Vec<_> = found.iter().map(RealRoot::rational_value).collect();
             let expected: Vec<_> = roots.iter().map(|(n, d)| Some(fraction(*n, *d))).collect();
             prop_assert_eq!(exact, expected);
         }
