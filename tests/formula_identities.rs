@@ -3,7 +3,7 @@
 use kinstep::formula::{
     Coefficients, Formula, FormulaTable, NotRunnable, RootCondition, Row, Strictness, read_rows,
 };
-use kinstep::math::{Rational, parse_rational};
+use kinstep::math::{Polynomial, Rational, is_schur_within, parse_rational, rational_from_f64};
 use num_traits::Zero;
 use proptest::prelude::*;
 
@@ -121,6 +121,23 @@ fn inside_the_range_the_radius_is_below_one_and_at_its_end_it_is_one() {
             let radius = row.spectral_radius(range.value());
             // Where two roots meet on the circle, the last digit of h costs half the digits of r.
             assert!((radius - 1.0).abs() < 1e-7, "{}: r(h_max) = {radius}", row.id());
+        }
+    }
+}
+
+#[test]
+fn spectral_radii_are_certified_by_exact_tests_beside_them() {
+    let exact = |x: f64| rational_from_f64(x).expect("finite");
+    for row in builtin().step_by(3) {
+        let end = row.feedback_range().value();
+        for h in [0.1, 0.37, 0.5 * end, 0.999 * end].into_iter().filter(|h| *h > 0.0 && h.is_finite()) {
+            let radius = row.spectral_radius(h);
+            let over_sum = exact(h) / row.gamma_sum();
+            let closed: Vec<Rational> =
+                row.alpha().iter().zip(row.gamma()).map(|(a, g)| a + g * &over_sum).collect();
+            let closed = Polynomial::from_rationals_descending(&closed);
+            assert!(is_schur_within(&closed, &exact(radius + 2e-13)), "{}: r({h}) > {radius}", row.id());
+            assert!(!is_schur_within(&closed, &exact(radius - 2e-13)), "{}: r({h}) < {radius}", row.id());
         }
     }
 }

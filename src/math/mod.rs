@@ -19,7 +19,6 @@ pub use gram::GramCholesky;
 pub use polynomial::Polynomial;
 pub use rational::{
     MAX_DIGITS, ParseRationalError, Rational, parse_rational, rational_from_f64, rational_to_f64,
-    simplest_between,
 };
 pub use rational_roots::rational_roots;
 pub use real_roots::{RealRoot, positive_roots, real_roots_between};

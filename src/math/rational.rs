@@ -1,8 +1,8 @@
-//! Exact rational numbers: reading them as people write them, and the simplest fraction in an interval.
+//! Exact rational numbers, and reading them as people write them.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
-use num_traits::{Num, One, Signed, ToPrimitive, Zero};
+use num_traits::{Num, One, ToPrimitive, Zero};
 
 /// An exact fraction of two integers of any size, always in lowest terms with a positive denominator.
 pub type Rational = num_rational::BigRational;
@@ -149,41 +149,6 @@ pub fn rational_to_f64(value: &Rational) -> f64 {
     value.to_f64().unwrap_or(f64::NAN)
 }
 
-/// Returns the fraction with the smallest denominator in the closed interval `[low, high]`.
-///
-/// Walks the continued fractions of both ends (the Stern-Brocot tree). The ends may be given in either order.
-pub fn simplest_between(low: &Rational, high: &Rational) -> Rational {
-    let (low, high) = if low <= high { (low, high) } else { (high, low) };
-    if low.is_positive() {
-        simplest_positive(low.clone(), high.clone())
-    } else if high.is_negative() {
-        -simplest_positive(-high, -low)
-    } else {
-        Rational::zero()
-    }
-}
-
-fn simplest_positive(mut low: Rational, mut high: Rational) -> Rational {
-    // Convergents p/q of the common continued fraction, with the usual start 1/0, 0/1.
-    let (mut p, mut q) = (BigInt::one(), BigInt::zero());
-    let (mut p_last, mut q_last) = (BigInt::zero(), BigInt::one());
-    loop {
-        let term = low.ceil().to_integer();
-        let (term, ends) = if Rational::from_integer(term.clone()) <= high {
-            (term, true)
-        } else {
-            (low.numer().div_floor(low.denom()), false)
-        };
-        (p, p_last) = (&term * &p + p_last, p);
-        (q, q_last) = (&term * &q + q_last, q);
-        if ends {
-            return Rational::new(p, q);
-        }
-        let whole = Rational::from_integer(term);
-        (low, high) = ((high - &whole).recip(), (low - whole).recip());
-    }
-}
-
 /// Returns the least common multiple of the denominators.
 pub(crate) fn common_denominator<'a>(values: impl IntoIterator<Item = &'a Rational>) -> BigInt {
     values.into_iter().fold(BigInt::one(), |lcm, value| lcm.lcm(value.denom()))
@@ -243,22 +208,7 @@ mod tests {
         }
     }
 
-    #[test]
-    fn finds_the_simplest_fraction() {
-        assert_eq!(simplest_between(&fraction(314, 100), &fraction(315, 100)), fraction(22, 7));
-        assert_eq!(simplest_between(&fraction(-1, 3), &fraction(1, 9)), Rational::zero());
-        assert_eq!(simplest_between(&fraction(-2, 3), &fraction(-5, 8)), fraction(-2, 3));
-        assert_eq!(simplest_between(&fraction(7, 3), &fraction(7, 3)), fraction(7, 3));
-    }
-
     proptest! {
-        #[test]
-        fn a_fraction_is_the_simplest_one_near_itself(n in 1_i64..2000, d in 1_i64..2000) {
-            let value = fraction(n, d);
-            let gap = fraction(1, 9_000_000);
-            prop_assert_eq!(simplest_between(&(&value - &gap), &(&value + &gap)), value);
-        }
-
         #[test]
         fn a_printed_fraction_reads_back(n in any::<i64>(), d in 1_i64..i64::MAX) {
             let value = fraction(n, d);

@@ -46,7 +46,7 @@ fn fewest_residues(square_free: &Polynomial) -> (u64, Vec<u64>) {
 
 /// The primes from 101 on.
 fn small_primes() -> impl Iterator<Item = u64> {
-    (101_u64..).filter(|n| (2..).take_while(|d| d * d <= *n).all(|d| *n % d != 0))
+    (101_u64..).filter(|n| (2..=n.isqrt()).all(|d| n % d != 0))
 }
 
 /// The roots modulo a prime, `None` where the degree drops or a root is repeated.
