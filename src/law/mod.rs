@@ -37,7 +37,7 @@ pub struct Resolution {
 /// The feedforward part is integrated with the row's `beta`, the feedback part with its `gamma`; both see the same
 /// Jacobian. A law owns what scratch memory it needs, so each arm has its own.
 pub trait Law: Send {
-    /// Allocates what a Jacobian of `rows` rows and `joints` columns with lengths of order `length` [m] needs; called
+    /// Allocates what a Jacobian of `rows` rows and `joints` columns with lengths of order `length` \[m\] needs; called
     /// once, before the first [`resolve`](Law::resolve).
     fn prepare(&mut self, rows: usize, joints: usize, length: f64);
 

@@ -6,7 +6,7 @@ use crate::robot::LimitViolation;
 use num_traits::ToPrimitive;
 use std::collections::HashSet;
 
-/// Samples may take this much memory [GiB] before a plan is refused.
+/// Samples may take this much memory \[GiB\] before a plan is refused.
 const MEMORY_CAP: f64 = 4.0;
 /// A path laid by its centre has to begin this near the tip [m or rad].
 const PATH_START_TOLERANCE: f64 = 1e-6;
@@ -90,14 +90,14 @@ impl PlannerBuilder {
         self
     }
 
-    /// The sampling gap [s].
+    /// The sampling gap \[s\].
     #[must_use]
     pub fn sigma(mut self, sigma: f64) -> Self {
         self.sigma = sigma;
         self
     }
 
-    /// How long the motion takes [s].
+    /// How long the motion takes \[s\].
     #[must_use]
     pub fn duration(mut self, duration: f64) -> Self {
         self.duration = duration;

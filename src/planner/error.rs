@@ -20,15 +20,15 @@ pub enum PlannerError {
     /// The duration is not a positive number.
     #[error("the duration is {value} s; it must be a positive number")]
     Duration {
-        /// What was given [s].
+        /// What was given \[s\].
         value: f64,
     },
     /// The sampling gap is not positive, not finite, or longer than the plan.
     #[error("sigma is {value} s; it must be positive and at most the duration, {duration} s")]
     Sigma {
-        /// What was given [s].
+        /// What was given \[s\].
         value: f64,
-        /// The duration [s].
+        /// The duration \[s\].
         duration: f64,
     },
     /// The plan would not fit into memory.
@@ -36,13 +36,13 @@ pub enum PlannerError {
         "sigma = {sigma} s makes {steps:.3e} steps: about {gibibytes:.3e} GiB of samples and {seconds:.1e} s of work; choose a larger sigma or a shorter duration"
     )]
     TooManySteps {
-        /// The sampling gap [s].
+        /// The sampling gap \[s\].
         sigma: f64,
         /// Steps.
         steps: f64,
-        /// Memory of the samples [GiB].
+        /// Memory of the samples \[GiB\].
         gibibytes: f64,
-        /// Estimated time [s].
+        /// Estimated time \[s\].
         seconds: f64,
     },
     /// Neither or an unusable feedback was given.
@@ -74,7 +74,7 @@ pub enum PlannerError {
         arm: String,
         /// The criterion's rate [1/s].
         rate: f64,
-        /// The sampling gap [s].
+        /// The sampling gap \[s\].
         sigma: f64,
         /// The row.
         formula: String,

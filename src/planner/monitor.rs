@@ -28,7 +28,7 @@ pub struct Violation {
     pub joint: String,
     /// Which of its limits.
     pub kind: LimitKind,
-    /// When it was worst [s].
+    /// When it was worst \[s\].
     pub t: f64,
     /// The position or velocity then.
     pub value: f64,

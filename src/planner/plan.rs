@@ -43,7 +43,7 @@ pub struct ArmPlan {
     pub positions: Vec<f64>,
     /// Feedforward joint velocities `J^+ phi'` [rad/s or m/s], sample after sample.
     pub velocities: Vec<f64>,
-    /// The task error of every sample (linear [m]; angular [rad]), zero in the components the task does not ask for.
+    /// The task error of every sample (linear \[m\]; angular \[rad\]), zero in the components the task does not ask for.
     pub errors: Vec<Vector6<f64>>,
     /// The largest norm of the task error over the run.
     pub max_error: f64,
@@ -51,11 +51,11 @@ pub struct ArmPlan {
     pub max_error_component: f64,
     /// The largest norm of the task error over the second half of the run, where the start is forgotten.
     pub max_error_steady: f64,
-    /// The largest position error [m].
+    /// The largest position error \[m\].
     pub max_position_error: f64,
-    /// The largest orientation error [rad].
+    /// The largest orientation error \[rad\].
     pub max_orientation_error: f64,
-    /// The smallest singular value of the task Jacobian met (a lower bound of it away from singularities), and when [s].
+    /// The smallest singular value of the task Jacobian met (a lower bound of it away from singularities), and when \[s\].
     pub smallest_singular_value: (f64, f64),
     /// On how many samples the law damped its answer.
     pub damped_samples: usize,
@@ -86,7 +86,7 @@ pub struct Plan {
     pub reason: Option<String>,
     /// The formula's id.
     pub formula: String,
-    /// The sampling gap used [s].
+    /// The sampling gap used \[s\].
     pub sigma: f64,
     /// The feedback step used.
     pub h: f64,
@@ -106,7 +106,7 @@ impl Plan {
         self.arms.first().map_or(0, |arm| arm.errors.len())
     }
 
-    /// The time of sample `n` [s].
+    /// The time of sample `n` \[s\].
     pub fn time(&self, n: usize) -> f64 {
         n as f64 * self.sigma
     }

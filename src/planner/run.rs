@@ -8,7 +8,7 @@ use nalgebra::Vector6;
 
 /// The task error at which a run is stopped, as a fraction of the chain's reach.
 const LOST_FRACTION_OF_REACH: f64 = 0.1;
-/// The orientation error at which a run is stopped [rad].
+/// The orientation error at which a run is stopped \[rad\].
 const LOST_ORIENTATION: f64 = 1.0;
 /// Below this fraction of those bounds an arm counts as back on its path after a singularity.
 const RECOVERED: f64 = 0.1;
@@ -42,7 +42,7 @@ pub struct ArmState<'a> {
     pub positions: &'a [f64],
     /// Feedforward joint velocities [rad/s or m/s].
     pub velocities: &'a [f64],
-    /// Task error (linear [m]; angular [rad]).
+    /// Task error (linear \[m\]; angular \[rad\]).
     pub error: &'a Vector6<f64>,
     /// Whether the law damped its answer here.
     pub damped: bool,
@@ -105,7 +105,7 @@ impl Planner {
         self.stepper.index()
     }
 
-    /// The time of the present sample [s].
+    /// The time of the present sample \[s\].
     pub fn time(&self) -> f64 {
         self.stepper.time()
     }
@@ -115,7 +115,7 @@ impl Planner {
         self.description.steps
     }
 
-    /// The sampling gap used [s].
+    /// The sampling gap used \[s\].
     pub fn sigma(&self) -> f64 {
         self.description.sigma
     }

@@ -3,9 +3,9 @@
 use super::{Path, PathPoint};
 use nalgebra::Vector3;
 
-/// A planar curve `(x, y)` by an angle [rad].
+/// A planar curve `(x, y)` by an angle \[rad\].
 pub trait PlanarCurve: Send + Sync {
-    /// The point [m] and its derivative by the angle [m/rad].
+    /// The point \[m\] and its derivative by the angle [m/rad].
     fn point(&self, angle: f64) -> ([f64; 2], [f64; 2]);
 }
 
@@ -18,7 +18,7 @@ impl PlanarCurve for Box<dyn PlanarCurve> {
 /// The circle `radius (cos a, sin a)`.
 #[derive(Clone, Copy, Debug)]
 pub struct Circle {
-    /// Radius [m].
+    /// Radius \[m\].
     pub radius: f64,
 }
 
@@ -33,7 +33,7 @@ impl PlanarCurve for Circle {
 /// The tricuspid (deltoid) `radius (2 cos a + cos 2a, 2 sin a - sin 2a)`, with cusps at 0 and at 120 degrees to either side.
 #[derive(Clone, Copy, Debug)]
 pub struct Tricuspid {
-    /// Radius of the rolling circle [m]; the cusps lie three radii from the centre.
+    /// Radius of the rolling circle \[m\]; the cusps lie three radii from the centre.
     pub radius: f64,
 }
 
@@ -49,7 +49,7 @@ impl PlanarCurve for Tricuspid {
 /// The astroid `radius (cos^3 a, sin^3 a)`, with cusps on the axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Astroid {
-    /// Distance of the cusps from the centre [m].
+    /// Distance of the cusps from the centre \[m\].
     pub radius: f64,
 }
 
@@ -64,11 +64,11 @@ impl PlanarCurve for Astroid {
 /// The Lissajous figure `(a_x sin(f_x a + phase), a_y sin(f_y a))`.
 #[derive(Clone, Copy, Debug)]
 pub struct Lissajous {
-    /// Half width and half height [m].
+    /// Half width and half height \[m\].
     pub amplitudes: [f64; 2],
     /// Periods per turn, in x and in y.
     pub frequencies: [f64; 2],
-    /// Phase of the x part [rad].
+    /// Phase of the x part \[rad\].
     pub phase: f64,
 }
 
@@ -84,7 +84,7 @@ impl PlanarCurve for Lissajous {
 /// The rose `radius cos(petals a) (cos a, sin a)`.
 #[derive(Clone, Copy, Debug)]
 pub struct Rose {
-    /// Length of a petal [m].
+    /// Length of a petal \[m\].
     pub radius: f64,
     /// The factor of the angle: odd numbers draw that many petals, even ones twice as many.
     pub petals: f64,
@@ -102,7 +102,7 @@ impl PlanarCurve for Rose {
 /// The straight line from the start over a displacement.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
-    /// From the start to the end, in world axes [m].
+    /// From the start to the end, in world axes \[m\].
     pub displacement: Vector3<f64>,
 }
 

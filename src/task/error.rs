@@ -7,11 +7,11 @@ use nalgebra::{IsometryMatrix3, Vector6};
 /// Every kind takes the leading rows of the geometric Jacobian (linear first, then angular).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TaskKind {
-    /// The x and y coordinates of the tip in the world [m].
+    /// The x and y coordinates of the tip in the world \[m\].
     PositionXy,
-    /// The tip's position in the world [m].
+    /// The tip's position in the world \[m\].
     Position,
-    /// Position [m] and orientation [rad].
+    /// Position \[m\] and orientation \[rad\].
     Pose,
 }
 

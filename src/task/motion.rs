@@ -4,7 +4,7 @@ use nalgebra::{IsometryMatrix3, Rotation3, Vector3, Vector6};
 /// Where a tip shall be at an instant, and how it shall move there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
-    /// Position in the world [m].
+    /// Position in the world \[m\].
     pub position: Vector3<f64>,
     /// Orientation in the world.
     pub rotation: Rotation3<f64>,
@@ -33,7 +33,7 @@ impl std::fmt::Debug for Motion {
 }
 
 impl Motion {
-    /// The path shifted so that it begins at the pose `start` [m], run through in `duration` [s].
+    /// The path shifted so that it begins at the pose `start` \[m\], run through in `duration` \[s\].
     pub fn from_pose(
         path: impl Path + 'static,
         time_law: impl TimeLaw + 'static,
@@ -44,7 +44,7 @@ impl Motion {
         Self::centered(path, time_law, duration, start.translation.vector - beginning, start.rotation)
     }
 
-    /// The path laid with its own origin at `center` [m], beginning with the orientation `initial`.
+    /// The path laid with its own origin at `center` \[m\], beginning with the orientation `initial`.
     pub fn centered(
         path: impl Path + 'static,
         time_law: impl TimeLaw + 'static,
@@ -55,7 +55,7 @@ impl Motion {
         Self { path: Box::new(path), time_law: Box::new(time_law), duration, origin: center, initial }
     }
 
-    /// The reference at time `t` [s]; before the beginning and after the end the motion rests.
+    /// The reference at time `t` \[s\]; before the beginning and after the end the motion rests.
     pub fn at(&self, t: f64) -> Reference {
         let tau = t / self.duration;
         let (u, mut rate) = self.time_law.progress(tau.clamp(0.0, 1.0));

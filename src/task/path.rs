@@ -4,9 +4,9 @@ use nalgebra::{Rotation3, Unit, Vector3};
 /// A point of a path with its derivative by the progress `u`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPoint {
-    /// Position [m].
+    /// Position \[m\].
     pub position: Vector3<f64>,
-    /// `d position / du` [m].
+    /// `d position / du` \[m\].
     pub tangent: Vector3<f64>,
 }
 
@@ -29,7 +29,7 @@ pub trait Path: Send + Sync {
     fn point(&self, u: f64) -> PathPoint;
 
     /// The rotation from the initial orientation at progress `u`, in world axes, and `d angle / du` as a rotation
-    /// rate [rad]. Unless overridden the orientation is held.
+    /// rate \[rad\]. Unless overridden the orientation is held.
     fn turn(&self, _u: f64) -> (Rotation3<f64>, Vector3<f64>) {
         (Rotation3::identity(), Vector3::zeros())
     }
@@ -73,7 +73,7 @@ impl Plane {
     }
 }
 
-/// A planar curve laid into space: its angle runs from `from` over `sweep` [rad] while `u` runs from 0 to 1.
+/// A planar curve laid into space: its angle runs from `from` over `sweep` \[rad\] while `u` runs from 0 to 1.
 #[derive(Clone, Debug)]
 pub struct Planar<C> {
     curve: C,
@@ -84,7 +84,7 @@ pub struct Planar<C> {
 }
 
 impl<C: PlanarCurve> Planar<C> {
-    /// The curve in `plane`, turned there by `rotation` [rad], over the angles `from` to `from + sweep` [rad].
+    /// The curve in `plane`, turned there by `rotation` \[rad\], over the angles `from` to `from + sweep` \[rad\].
     pub fn new(curve: C, plane: Plane, rotation: f64, from: f64, sweep: f64) -> Self {
         let (x, y) = plane.directions();
         let (sine, cosine) = rotation.sin_cos();
@@ -113,7 +113,7 @@ pub struct Turning<P> {
 }
 
 impl<P: Path> Turning<P> {
-    /// `path`, turning by `angle` [rad] about the world direction `axis` in its course.
+    /// `path`, turning by `angle` \[rad\] about the world direction `axis` in its course.
     pub fn new(path: P, axis: Unit<Vector3<f64>>, angle: f64) -> Self {
         Self { path, axis, angle }
     }
