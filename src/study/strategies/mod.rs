@@ -1,0 +1,30 @@
+//! Strategies for property tests with proptest: random formulas, serial arms, paths, and whole order studies of them.
+//!
+//! Everything is made through the doors that people use (rows as TOML, robots as URDF), shrinks to few joints, small
+//! numbers and round figures, and prints what is needed to build it again.
+//!
+//! ```
+//! use kinstep::study::strategies::order_at_fixed_step;
+//! use proptest::strategy::{Strategy, ValueTree};
+//! use proptest::test_runner::TestRunner;
+//!
+//! let mut runner = TestRunner::deterministic();
+//! let case = order_at_fixed_step().new_tree(&mut runner)?.current();
+//! println!("{case}"); // the row, the feedback, the path and the URDF
+//! let report = case.study()?;
+//! assert!(!report.task_transient.is_some_and(|seen| seen.verdict.is_not_reached()), "{case}\n{report}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod arm;
+mod case;
+mod formula;
+mod path;
+mod rational;
+
+pub use arm::{ArmCase, JointCase, arms};
+pub use case::{OrderCase, UnstableCase, diverging, order_at_fixed_gain, order_at_fixed_step};
+pub use formula::{
+    FormulaCase, adams_like, feedback_steps, formulas, from_table, look_ahead, overshooting_steps,
+};
+pub use path::{PathCase, Shape, TimeLawCase, paths, time_laws};
