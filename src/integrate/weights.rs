@@ -5,7 +5,8 @@ use crate::math::Rational;
 
 /// A row as the stepper uses it: what multiplies the known states and evaluations, newest first.
 ///
-/// `x_{n+1} = sum_j state_j x_{n-j} + sum_j first_j f_{n-j} + sum_j second_j g_{n-j}`, trailing zeros cut off.
+/// `x_{n+1} = sum_j state_j x_{n-j} + sum_j first_j f_{n-j} + sum_j second_j g_{n-j}` with `sum_j state_j = 1`, trailing zeros
+/// cut off.
 #[derive(Clone, Debug)]
 pub(super) struct Weights<T> {
     pub(super) state: Vec<T>,
@@ -43,13 +44,27 @@ impl<T: Scalar> Weights<T> {
     }
 
     /// Writes `x_{n+1}`. The small terms are added first: they lose least that way.
+    ///
+    /// The weights of the states sum to one in every consistent row, but not once they are rounded; what is missing would
+    /// push every step the same way. So older states enter by their differences from the newest.
     pub(super) fn combine(&self, x: &Ring<T>, f: &Ring<T>, g: Option<&Ring<T>>, next: &mut [T]) {
         next.fill(T::zero());
         if let Some(g) = g {
             add(&self.second, g, next);
         }
         add(&self.first, f, next);
-        add(&self.state, x, next);
+        let newest = x.get(0);
+        for (age, &weight) in self.state.iter().enumerate().skip(1) {
+            if weight == T::zero() {
+                continue;
+            }
+            for ((sum, &sample), &newest) in next.iter_mut().zip(x.get(age)).zip(newest) {
+                *sum += weight * (sample - newest);
+            }
+        }
+        for (sum, &newest) in next.iter_mut().zip(newest) {
+            *sum += newest;
+        }
     }
 }
 
