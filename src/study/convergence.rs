@@ -248,9 +248,14 @@ fn verdict(claimed: usize, before: f64, finest: f64, ratio: f64, criteria: &Crit
     if off(finest) <= criteria.tolerance && off(before) <= 2.0 * criteria.tolerance {
         return Verdict::Confirmed { order: claimed, slope: finest };
     }
-    // Slopes err in proportion to sigma: two of them point to their limit.
+    // Slopes err in proportion to sigma: two of them point to their limit. Where they point past the claim, it is not
+    // the claim that they speak against.
     let approaching = off(finest) < off(before) && (before - order) * (finest - order) > 0.0;
-    let limit = if approaching { finest + (finest - before) * ratio / (1.0 - ratio) } else { finest };
+    let limit = match finest + (finest - before) * ratio / (1.0 - ratio) {
+        _ if !approaching => finest,
+        beyond if (beyond - order) * (finest - order) < 0.0 => order,
+        limit => limit,
+    };
     if limit < order - ELSEWHERE {
         Verdict::NotReached { claimed, slope: finest }
     } else if limit > order + ELSEWHERE {
@@ -314,6 +319,14 @@ mod tests {
         assert!(matches!(seen.verdict, Verdict::Confirmed { order: 2, .. }));
         let wild = Convergence::judge(&sigmas, &[1e-2, 1e-4, 5e-5], 0.0, None, &Criteria::default());
         assert!(!wild.verdict.is_confirmed());
+    }
+
+    #[test]
+    fn slopes_that_hurry_towards_the_claim_do_not_speak_against_it() {
+        let sigmas = [4.5, 3.0, 2.0];
+        let errors: Vec<f64> = [0.0, 3.573, 3.573 + 3.175].map(|falls: f64| 1.5_f64.powf(-falls)).to_vec();
+        let seen = Convergence::judge(&sigmas, &errors, 0.0, Some(3), &Criteria::default());
+        assert!(!seen.verdict.is_decided(), "{}", seen.verdict);
     }
 
     #[test]

@@ -43,7 +43,9 @@ pub enum LadderError {
         nearest: f64,
     },
     /// The gaps do not become finer from rung to rung.
-    #[error("the ladder goes from {coarser} to {finer} steps; write the coarsest gap first and each finer than the last")]
+    #[error(
+        "the ladder goes from {coarser} to {finer} steps; write the coarsest gap first and each finer than the last"
+    )]
     NotDescending {
         /// Steps of a rung.
         coarser: usize,

@@ -25,21 +25,17 @@ impl Problem {
         exact: |t, x| x[0] = t.sin().exp(),
     };
 
-    /// `x' = -y r^2`, `y' = x r^2` with `r^2 = x^2 + y^2`: nonlinear, and once around the unit circle.
-    pub const ORBIT: Self = Self {
-        name: "orbit",
+    /// `x' = x^2 cos t`, nonlinear, whose solution `1 / (2 - sin t)` has a pulse in every period.
+    pub const PULSE: Self = Self {
+        name: "pulse",
         duration: 6.0,
-        dimension: 2,
-        derivative: |_, x, f| {
-            let square = x[0] * x[0] + x[1] * x[1];
-            f[0] = -x[1] * square;
-            f[1] = x[0] * square;
-        },
-        exact: |t, x| (x[1], x[0]) = t.sin_cos(),
+        dimension: 1,
+        derivative: |t, x, f| f[0] = x[0] * x[0] * t.cos(),
+        exact: |t, x| x[0] = (2.0 - t.sin()).recip(),
     };
 
     /// The problems on which every row of the formula table is tried.
-    pub const SMOOTH: [Self; 2] = [Self::SWING, Self::ORBIT];
+    pub const SMOOTH: [Self; 2] = [Self::SWING, Self::PULSE];
 
     /// The initial state.
     pub fn initial(&self) -> Vec<f64> {

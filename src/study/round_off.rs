@@ -61,7 +61,8 @@ mod tests {
             let mut seed = 12_345_u64;
             let series: Vec<f64> = (0..400)
                 .map(|n| {
-                    seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                    seed =
+                        seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                     let uniform = (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
                     (0.02 * f64::from(n)).cos() + size * uniform
                 })

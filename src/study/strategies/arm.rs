@@ -102,7 +102,9 @@ impl ArmCase {
     fn starts_well(&self) -> bool {
         self.chain().is_some_and(|chain| {
             let (smallest, largest) = self.singular_values(&chain, &self.q0());
-            chain.dof() == self.joints.len() && smallest >= SMALLEST_AT_START && largest <= CONDITION_AT_START * smallest
+            chain.dof() == self.joints.len()
+                && smallest >= SMALLEST_AT_START
+                && largest <= CONDITION_AT_START * smallest
         })
     }
 }
@@ -128,10 +130,11 @@ impl fmt::Debug for ArmCase {
 pub fn arms() -> impl Strategy<Value = ArmCase> + Clone {
     let planar = prop::collection::vec(planar_joint(), 4..=9)
         .prop_map(|joints| ArmCase { joints, task: TaskKind::PositionXy });
-    let spatial = (prop::collection::vec(spatial_joint(), 4..=9), any::<bool>()).prop_map(|(joints, pose)| {
-        let task = if pose && joints.len() >= 7 { TaskKind::Pose } else { TaskKind::Position };
-        ArmCase { joints, task }
-    });
+    let spatial =
+        (prop::collection::vec(spatial_joint(), 4..=9), any::<bool>()).prop_map(|(joints, pose)| {
+            let task = if pose && joints.len() >= 7 { TaskKind::Pose } else { TaskKind::Position };
+            ArmCase { joints, task }
+        });
     prop_oneof![1 => planar, 2 => spatial].prop_filter("well conditioned at the start", ArmCase::starts_well)
 }
 

@@ -1,6 +1,9 @@
 //! Whole order studies of random formulas on random arms and paths.
 
-use super::{ArmCase, FormulaCase, PathCase, TimeLawCase, arms, feedback_steps, formulas, overshooting_steps, paths, time_laws};
+use super::{
+    ArmCase, FormulaCase, PathCase, TimeLawCase, arms, feedback_steps, formulas, overshooting_steps, paths,
+    time_laws,
+};
 use crate::formula::Formula;
 use crate::planner::{Arm, Feedback, Planner, PlannerError, Start};
 use crate::robot::Chain;
@@ -123,8 +126,18 @@ impl OrderCase {
         let chain = arm.chain()?;
         let (smallest_singular_value, _) = arm.singular_values(&chain, &arm.q0());
         let start = Start::Sufficient;
-        let case =
-            Self { formula, arm, path, time_law, feedback, start, ladder, orders, chain, smallest_singular_value };
+        let case = Self {
+            formula,
+            arm,
+            path,
+            time_law,
+            feedback,
+            start,
+            ladder,
+            orders,
+            chain,
+            smallest_singular_value,
+        };
         (case.worst_condition() < CONDITION).then_some(case)
     }
 }
@@ -134,7 +147,11 @@ impl fmt::Display for OrderCase {
         let steps: Vec<usize> = self.ladder.rungs().map(|rung| rung.steps).collect();
         writeln!(f, "{}", self.formula)?;
         writeln!(f, "feedback = {:?}, start = {:?}, claimed: {:?}", self.feedback, self.start, self.orders)?;
-        writeln!(f, "path = {:?}, time law = {:?}, duration = {DURATION} s, steps = {steps:?}", self.path, self.time_law)?;
+        writeln!(
+            f,
+            "path = {:?}, time law = {:?}, duration = {DURATION} s, steps = {steps:?}",
+            self.path, self.time_law
+        )?;
         write!(f, "{}", self.arm)
     }
 }
@@ -200,7 +217,10 @@ fn gain_ladder(formula: &Formula) -> Option<(f64, Ladder)> {
         formula.feedback_range().contains(here) && formula.spectral_radius(here) <= RADIUS
     });
     let usable = usable.count();
-    (usable >= 4).then(|| Ladder::half_octaves(DURATION, coarsest, usize::min(usable, RUNGS)).ok()).flatten().map(|ladder| (h, ladder))
+    (usable >= 4)
+        .then(|| Ladder::half_octaves(DURATION, coarsest, usize::min(usable, RUNGS)).ok())
+        .flatten()
+        .map(|ladder| (h, ladder))
 }
 
 /// A run whose step lies beyond the range, long enough to show it.
@@ -237,12 +257,15 @@ impl fmt::Debug for UnstableCase {
 
 /// Runs at a step with `r(h) >= 1.02`, long enough that even round-off grows to the size of the arm.
 pub fn diverging() -> impl Strategy<Value = UnstableCase> {
-    (order_at_fixed_step(), any::<prop::sample::Index>()).prop_filter_map("a step beyond the range", |(case, pick)| {
-        let formula = case.formula.formula();
-        let steps = overshooting_steps(formula, GROWTH);
-        let h = *steps.get(pick.index(steps.len().max(1)))?;
-        let radius = formula.spectral_radius(h);
-        let steps = (TOTAL_GROWTH.ln() / radius.ln()).ceil().max(128.0) as usize;
-        Some(UnstableCase { case, h, radius, steps })
-    })
+    (order_at_fixed_step(), any::<prop::sample::Index>()).prop_filter_map(
+        "a step beyond the range",
+        |(case, pick)| {
+            let formula = case.formula.formula();
+            let steps = overshooting_steps(formula, GROWTH);
+            let h = *steps.get(pick.index(steps.len().max(1)))?;
+            let radius = formula.spectral_radius(h);
+            let steps = (TOTAL_GROWTH.ln() / radius.ln()).ceil().max(128.0) as usize;
+            Some(UnstableCase { case, h, radius, steps })
+        },
+    )
 }

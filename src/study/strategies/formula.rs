@@ -133,10 +133,7 @@ pub fn feedback_steps(formula: &Formula, radius: f64) -> Vec<f64> {
     let range = formula.feedback_range();
     let end = range.value().min(4.0);
     let candidate = |k: u32| (1000.0 * end * f64::from(k) / f64::from(STEPS)).floor() / 1000.0;
-    (1..STEPS)
-        .map(candidate)
-        .filter(|&h| range.contains(h) && formula.spectral_radius(h) <= radius)
-        .collect()
+    (1..STEPS).map(candidate).filter(|&h| range.contains(h) && formula.spectral_radius(h) <= radius).collect()
 }
 
 /// Feedback steps beyond the range at which errors grow by `radius` a step or faster.

@@ -88,7 +88,10 @@ pub struct LeaningPath {
 
 impl fmt::Debug for LeaningPath {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("LeaningPath").field("scale", &self.scale).field("lean", &self.lean).finish_non_exhaustive()
+        f.debug_struct("LeaningPath")
+            .field("scale", &self.scale)
+            .field("lean", &self.lean)
+            .finish_non_exhaustive()
     }
 }
 
@@ -157,7 +160,8 @@ pub fn time_laws() -> impl Strategy<Value = TimeLawCase> + Clone {
 /// Closed paths that move in x and y at least, of an extent that asks for 0.1 to 0.6 rad of joint motion.
 pub fn paths() -> impl Strategy<Value = PathCase> + Clone {
     let vector = || prop::array::uniform3(-10_i8..=10);
-    let fourier = prop::collection::vec((vector(), vector()).prop_map(|(a, b)| [a, b]), 1..=3).prop_map(Shape::Fourier);
+    let fourier =
+        prop::collection::vec((vector(), vector()).prop_map(|(a, b)| [a, b]), 1..=3).prop_map(Shape::Fourier);
     let shape = prop_oneof![
         2 => fourier,
         1 => Just(Shape::Circle),

@@ -39,7 +39,9 @@ pub(super) fn explicit_beta(alpha: &[Rational]) -> Vec<Rational> {
         })
         .collect();
     eliminate(&mut system);
-    std::iter::once(Rational::zero()).chain(system.into_iter().map(|mut row| row.swap_remove(steps))).collect()
+    std::iter::once(Rational::zero())
+        .chain(system.into_iter().map(|mut row| row.swap_remove(steps)))
+        .collect()
 }
 
 /// Gauss-Jordan elimination of a regular system with its right-hand side as the last column.

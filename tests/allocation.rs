@@ -1,0 +1,42 @@
+//! A control loop allocates nothing once it is set up.
+
+use kinstep::nalgebra::{IsometryMatrix3, Vector3};
+use kinstep::planner::{Arm, Planner, Start};
+use kinstep::robot::embedded;
+use kinstep::scheme;
+use kinstep::task::{Circle, Motion, Planar, Plane, Sin2, TaskKind};
+use std::f64::consts::TAU;
+
+/// Two Pandas, a metre apart, each on a circle with its orientation held.
+fn planner(start: Start) -> Planner {
+    let arm = |name: &str, y: f64| {
+        let chain = embedded::get("panda").unwrap().chain("panda_link0", "panda_link8").unwrap();
+        let chain = chain.mounted(&IsometryMatrix3::new(Vector3::new(0.0, y, 0.0), Vector3::zeros()));
+        let q0 = vec![0.0, -0.6, 0.0, -2.2, 0.0, 1.6, 0.8];
+        let pose = chain.forward(&q0, &mut chain.scratch()).pose();
+        let path = Planar::new(Circle { radius: 0.05 }, Plane::Yz, 0.0, 0.0, TAU);
+        Arm::new(name, chain, q0, TaskKind::Pose, Motion::from_pose(path, Sin2, 2.0, &pose))
+    };
+    let arms = [arm("left", 0.5), arm("right", -0.5)];
+    scheme::dtsmp(arms, 0.001, 0.4).start(start).duration(2.0).build().unwrap()
+}
+
+#[test]
+fn a_thousand_steps_of_two_seven_joint_arms_allocate_nothing() {
+    for start in [Start::Paper, Start::Ramp, Start::Rk4, Start::Rk8] {
+        let mut planner = planner(start);
+        let spent = allocation_counter::measure(|| {
+            for _ in 0..1000 {
+                planner.step();
+            }
+        });
+        assert_eq!((planner.index(), planner.stop()), (1000, None));
+        assert_eq!(spent.count_total, 0, "{spent:?}");
+    }
+}
+
+#[test]
+fn the_counter_counts() {
+    let spent = allocation_counter::measure(|| drop(std::hint::black_box(planner(Start::Rk4))));
+    assert!(spent.count_total > 10);
+}
