@@ -1,4 +1,5 @@
 //! A control loop allocates nothing once it is set up.
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
 use kinstep::planner::{Arm, Planner, Start};

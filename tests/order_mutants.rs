@@ -3,6 +3,7 @@
 //!
 //! Cases are drawn like those of `order_property.rs`; `PROPTEST_CASES` and `PROPTEST_RNG_SEED` work here too.
 #![cfg(feature = "proptest")]
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::formula::{Coefficients, Formula, FormulaTable};
 use kinstep::math::Rational;
@@ -89,11 +90,12 @@ fn still_stable(case: OrderCase) -> Option<OrderCase> {
     (formula.spectral_radius(h) <= 0.95).then_some(case)
 }
 
-/// Starts by Euler steps on a path that accelerates at once, where Runge-Kutta was claimed. From a cusp it would not.
+/// Starts by Euler steps on a path that accelerates at once, where Runge-Kutta was claimed. From a cusp it would
+/// not, and an error of order three can hide what the start leaves.
 fn with_an_euler_start(mut case: OrderCase) -> Option<OrderCase> {
     let accelerates = matches!(case.time_law, TimeLawCase::Sin2 | TimeLawCase::Linear)
         && !matches!(case.path.shape, Shape::Tricuspid | Shape::Astroid);
-    if case.formula.formula().order() < 2 || !accelerates {
+    if case.formula.formula().order() < 3 || !accelerates {
         return None;
     }
     case.start = Start::Paper;

@@ -7,6 +7,11 @@
 //! PROPTEST_CASES=2000 PROPTEST_RNG_SEED=1 cargo test --all-features --test order_property -- --nocapture
 //! ```
 #![cfg(feature = "proptest")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that can not go on stops, and says what it counted"
+)]
 
 use kinstep::planner::PlanStatus;
 use kinstep::study::strategies::{

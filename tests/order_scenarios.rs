@@ -1,4 +1,5 @@
 //! The orders that the examples and the paper's experiments show, from scenario files and through the library.
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::formula::FormulaTable;
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};

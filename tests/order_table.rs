@@ -1,4 +1,5 @@
 //! Every row of the table that may run shows its order on smooth equations, and no row may run without showing it.
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::formula::{Formula, FormulaTable};
 use kinstep::study::{Convergence, Ladder, OrderStudy, Orders, Problem};

@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// Slopes that differ by more than this are not those of one power law.
+const UNLIKE: f64 = 0.5;
+
 /// What a study asks of its errors before it speaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criteria {
@@ -168,7 +171,7 @@ impl Convergence {
     ///
     /// Three neighbouring rungs, two pairs, must lie `floor_margin` times above the floor. The order is confirmed when the
     /// finest pair is within the tolerance of it and the one before within twice that. It is not reached (or
-    /// exceeded) when the slopes head elsewhere: the limit that the last two slopes point to, where they approach the
+    /// exceeded) when both slopes are alike and head elsewhere: the limit that the last two slopes point to, where they approach the
     /// claim, else the finest slope itself, is more than a half away from it. Anything else is not decided.
     ///
     /// ```
@@ -232,7 +235,6 @@ fn finest_usable(marks: &[Mark]) -> (usize, usize) {
 
 /// Going from fine to coarse, everything beyond the first slope unlike the finest one is pre-asymptotic.
 fn name_pre_asymptotic(marks: &mut [Mark], slopes: &[f64], finest: f64) {
-    const UNLIKE: f64 = 0.5;
     let unlike = |slope: &f64| !((slope - finest).abs() <= UNLIKE);
     let coarse = slopes.iter().rposition(unlike).map_or(0, |i| (i + 1).min(marks.len()));
     for mark in marks[..coarse].iter_mut().filter(|mark| **mark == Mark::Used) {
@@ -248,6 +250,7 @@ fn verdict(claimed: usize, before: f64, finest: f64, ratio: f64, criteria: &Crit
     if off(finest) <= criteria.tolerance && off(before) <= 2.0 * criteria.tolerance {
         return Verdict::Confirmed { order: claimed, slope: finest };
     }
+    let settled = (finest - before).abs() <= UNLIKE;
     // Slopes err in proportion to sigma: two of them point to their limit. Where they point past the claim, it is not
     // the claim that they speak against.
     let approaching = off(finest) < off(before) && (before - order) * (finest - order) > 0.0;
@@ -256,9 +259,9 @@ fn verdict(claimed: usize, before: f64, finest: f64, ratio: f64, criteria: &Crit
         beyond if (beyond - order) * (finest - order) < 0.0 => order,
         limit => limit,
     };
-    if limit < order - ELSEWHERE {
+    if settled && limit < order - ELSEWHERE {
         Verdict::NotReached { claimed, slope: finest }
-    } else if limit > order + ELSEWHERE {
+    } else if settled && limit > order + ELSEWHERE {
         Verdict::Exceeded { claimed, slope: finest }
     } else {
         Verdict::Undecidable(Undecidable::Unsettled { before, finest })

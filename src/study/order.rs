@@ -10,7 +10,7 @@ use crate::integrate::{IntegrateError, Multistep, Ode, Starter, Status};
 use crate::planner::{ArmPlan, Plan, Planner};
 use std::fmt;
 
-/// A jitter that still falls by this much from the last rung but one to the finest is signal, not round-off.
+/// A jitter that still falls by this much at each of the last two pairs of rungs is signal, not round-off.
 const STILL_FALLING: f64 = 0.6;
 
 /// The orders that a study is to confirm; where none is claimed, the nearest whole number stands in.
@@ -296,11 +296,15 @@ fn joint_error(plan: &Plan, reference: &Plan) -> f64 {
 }
 
 /// The round-off that the finest run shows, or that its numbers can not go below.
+///
+/// Rough errors can be signal too, of parasitic roots for instance. That falls from rung to rung, which round-off does not.
 fn floor(errors: &[Errors]) -> f64 {
     let run: Vec<&Errors> = errors.iter().filter(|errors| errors.transient.is_finite()).collect();
     let least = run.iter().map(|errors| errors.scale).fold(1.0, f64::max) * 2.0 * f64::EPSILON;
-    match run[..] {
-        [.., before, finest] if finest.jitter >= STILL_FALLING * before.jitter => finest.jitter.max(least),
+    let last = &run[run.len().saturating_sub(3)..];
+    let falls = last.windows(2).all(|pair| pair[1].jitter < STILL_FALLING * pair[0].jitter);
+    match last.last() {
+        Some(finest) if !falls => finest.jitter.max(least),
         _ => least,
     }
 }

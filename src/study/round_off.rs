@@ -32,7 +32,9 @@ pub fn jitter(series: &[f64]) -> Option<f64> {
         }
     }
     rough.truncate(series.len() - DIFFERENCES);
-    rough.iter_mut().for_each(|entry| *entry = entry.abs());
+    for entry in &mut rough {
+        *entry = entry.abs();
+    }
     let middle = rough.len() / 2;
     let (_, median, _) = rough.select_nth_unstable_by(middle, f64::total_cmp);
     Some(*median / NORMAL_MEDIAN / WHITE_NOISE_GAIN)

@@ -88,10 +88,6 @@ impl ArmCase {
     pub fn singular_values(&self, chain: &Chain, q: &[f64]) -> (f64, f64) {
         let mut columns = vec![Vector6::zeros(); chain.dof()];
         chain.forward(q, &mut chain.scratch()).geometric_jacobian(&mut columns);
-        fn ends<const M: usize>(columns: &[Vector6<f64>]) -> (f64, f64) {
-            let values = SingularValues::<M>::of(columns);
-            (values.smallest(), values.largest())
-        }
         match self.task {
             TaskKind::PositionXy => ends::<2>(&columns),
             TaskKind::Position => ends::<3>(&columns),
@@ -107,6 +103,11 @@ impl ArmCase {
                 && largest <= CONDITION_AT_START * smallest
         })
     }
+}
+
+fn ends<const M: usize>(columns: &[Vector6<f64>]) -> (f64, f64) {
+    let values = SingularValues::<M>::of(columns);
+    (values.smallest(), values.largest())
 }
 
 fn metres(offset: [i8; 3]) -> String {

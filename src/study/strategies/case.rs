@@ -5,9 +5,9 @@ use super::{
     time_laws,
 };
 use crate::formula::Formula;
-use crate::planner::{Arm, Feedback, Planner, PlannerError, Start};
+use crate::planner::{Arm, Feedback, Plan, Planner, PlannerError, Start};
 use crate::robot::Chain;
-use crate::study::{Ladder, OrderReport, OrderStudy, Orders};
+use crate::study::{Ladder, OrderReport, OrderStudy, Orders, Rung};
 use crate::task::Motion;
 use num_traits::ToPrimitive;
 use proptest::prelude::*;
@@ -21,6 +21,10 @@ const RADIUS: f64 = 0.95;
 const GROWTH: f64 = 1.02;
 /// Growth over a run that is to diverge: enough to lift round-off to the size of the arm.
 const TOTAL_GROWTH: f64 = 1e18;
+/// The error of the coarsest run is at most this fraction of the path's extent.
+const RESOLVED: f64 = 0.05;
+/// At how many samples of a run it is looked at, about.
+const SAMPLES: usize = 128;
 /// The condition number of the Jacobian stays below this along the path.
 const CONDITION: f64 = 100.0;
 
@@ -99,22 +103,30 @@ impl OrderCase {
         OrderStudy::new(self.ladder.clone()).claiming(self.orders)
     }
 
-    /// The largest condition number of the task Jacobian met in a run of 128 steps at the formula's first usable step;
-    /// infinite where the run stops.
+    /// Whether the coarsest run follows its path at all: an error of the path's own size says nothing about orders.
+    fn resolves_its_path(&self) -> bool {
+        let extent = self.path.extent(self.smallest_singular_value);
+        let plan =
+            self.ladder.rungs().next().and_then(|rung| self.planner(rung.sigma).ok()).map(Planner::run);
+        plan.is_some_and(|plan| plan.is_completed() && plan.arms[0].max_error <= RESOLVED * extent)
+    }
+
+    /// The largest condition number of the task Jacobian along the coarsest and the finest run; infinite where one stops.
     pub fn worst_condition(&self) -> f64 {
-        let step = feedback_steps(self.formula.formula(), RADIUS).first().copied().map(Feedback::Step);
-        let feedback = step.unwrap_or(self.feedback);
-        let (formula, start) = (self.formula.formula(), self.start.clone());
-        let Ok(mut planner) = self.planner_with(formula, feedback, start, DURATION / 128.0) else {
+        let mut rungs = self.ladder.rungs();
+        let ends = [rungs.next(), rungs.last()];
+        ends.into_iter().flatten().map(|rung| self.condition_along(rung)).fold(0.0, f64::max)
+    }
+
+    fn condition_along(&self, rung: Rung) -> f64 {
+        let Some(plan) = self.planner(rung.sigma).ok().map(Planner::run).filter(Plan::is_completed) else {
             return f64::INFINITY;
         };
-        let mut worst = 0.0_f64;
-        while !planner.is_finished() {
-            let (smallest, largest) = self.arm.singular_values(&self.chain, planner.arm(0).positions);
-            worst = worst.max(largest / smallest);
-            planner.step();
-        }
-        if planner.stop().is_some() { f64::INFINITY } else { worst }
+        let condition = |n: usize| {
+            let (smallest, largest) = self.arm.singular_values(&self.chain, plan.arms[0].position(n));
+            largest / smallest
+        };
+        (0..=plan.steps).step_by((plan.steps / SAMPLES).max(1)).map(condition).fold(0.0, f64::max)
     }
 
     fn assemble(
@@ -138,7 +150,7 @@ impl OrderCase {
             chain,
             smallest_singular_value,
         };
-        (case.worst_condition() < CONDITION).then_some(case)
+        (case.resolves_its_path() && case.worst_condition() < CONDITION).then_some(case)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Random formulas of a known order, by construction.
 
-use super::rational::{binomial, explicit_beta, product, ratio};
+use super::rational::{binomial, explicit_beta, product, ratio, whole};
 use crate::formula::{Coefficients, Formula, FormulaTable, Row};
 use crate::math::Rational;
 use num_traits::{One, Zero};
@@ -112,19 +112,14 @@ fn look_ahead_weights(steps: usize, order: usize, free: &[i64]) -> Vec<Rational>
         c.push(if m == 1 {
             Rational::one()
         } else if m <= order {
-            ratio(-1, (m * (m - 1)) as i64)
+            -whole(m * (m - 1)).recip()
         } else {
-            let known = c.iter().enumerate().map(|(i, c)| {
-                let (i, m) = (i + 1, m);
-                c * ratio((1 << (i - 1)) * binomial(steps - i, m - i), 1)
-            });
-            (ratio(free[m - order - 1], 12) - known.sum::<Rational>()) / ratio(1 << (m - 1), 1)
+            let known = (1..m).map(|i| &c[i - 1] * whole(1_u64 << (i - 1)) * binomial(steps - i, m - i));
+            (ratio(free[m - order - 1], 12) - known.sum::<Rational>()) / whole(1_u64 << (m - 1))
         });
     }
-    let sign = |j: usize| if j.is_multiple_of(2) { 1 } else { -1 };
-    (0..=steps)
-        .map(|j| c.iter().enumerate().map(|(i, c)| c * ratio(sign(j) * binomial(i + 1, j), 1)).sum())
-        .collect()
+    let sign = |j: usize| whole(if j.is_multiple_of(2) { 1 } else { -1 });
+    (0..=steps).map(|j| (1..=steps).map(|m| &c[m - 1] * sign(j) * binomial(m, j)).sum()).collect()
 }
 
 /// Feedback steps inside the range of a formula, evenly spread, at which errors decay by `radius` a step or faster.

@@ -48,8 +48,13 @@ impl PathCase {
         let start = unit.point(0.0).position;
         let distance = |k: u32| (unit.point(f64::from(k) / 64.0).position - start).norm();
         let size = (1..64).map(distance).fold(0.0, f64::max);
-        let extent = f64::from(self.extent) / 100.0 * smallest_singular_value;
+        let extent = self.extent(smallest_singular_value);
         LeaningPath { unit, scale: extent / size, lean: extent * f64::from(self.lean) }
+    }
+
+    /// The largest distance from the start [m], for an arm with that smallest singular value.
+    pub fn extent(&self, smallest_singular_value: f64) -> f64 {
+        f64::from(self.extent) / 100.0 * smallest_singular_value
     }
 
     fn unit_path(&self) -> Box<dyn Path> {

@@ -1,6 +1,7 @@
 //! Small exact computations from which rows are made.
 
 use crate::math::Rational;
+use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
 pub(super) fn ratio(numerator: i64, denominator: i64) -> Rational {
@@ -18,24 +19,25 @@ pub(super) fn product(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     result
 }
 
+pub(super) fn whole(number: impl Into<BigInt>) -> Rational {
+    Rational::from_integer(number.into())
+}
+
 /// The number of ways to choose `k` of `n`.
-pub(super) fn binomial(n: usize, k: usize) -> i64 {
-    if k > n {
-        return 0;
-    }
-    (0..k).fold(1, |ways, i| ways * (n - i) as i64 / (i + 1) as i64)
+pub(super) fn binomial(n: usize, k: usize) -> Rational {
+    whole(num_integer::binomial(n, k))
 }
 
 /// `beta_0 = 0, beta_1, ..., beta_s` with which `alpha` has order `s`: the order conditions
 /// `sum_j alpha_j (1-j)^q = q sum_j beta_j (1-j)^(q-1)`, q = 1..s, solved exactly.
 pub(super) fn explicit_beta(alpha: &[Rational]) -> Vec<Rational> {
     let steps = alpha.len() - 1;
-    let power = |j: usize, q: usize| num_traits::pow(ratio(1 - j as i64, 1), q);
+    let power = |j: usize, q: usize| num_traits::pow(whole(1) - whole(j), q);
     let mut system: Vec<Vec<Rational>> = (1..=steps)
         .map(|q| {
             let moment: Rational = alpha.iter().enumerate().map(|(j, a)| a * power(j, q)).sum();
             let row = (1..=steps).map(|j| power(j, q - 1));
-            row.chain([moment / ratio(q as i64, 1)]).collect()
+            row.chain([moment / whole(q)]).collect()
         })
         .collect();
     eliminate(&mut system);
@@ -76,7 +78,10 @@ mod tests {
 
     #[test]
     fn counts_choices() {
-        assert_eq!((0..=5).map(|k| binomial(5, k)).collect::<Vec<_>>(), [1, 5, 10, 10, 5, 1]);
-        assert_eq!(binomial(2, 3), 0);
+        assert_eq!(
+            (0..=5).map(|k| binomial(5, k)).collect::<Vec<_>>(),
+            [1, 5, 10, 10, 5, 1].map(|ways: i32| whole(ways))
+        );
+        assert!(binomial(2, 3).is_zero());
     }
 }
