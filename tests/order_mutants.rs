@@ -64,7 +64,7 @@ fn with_a_wrong_coefficient(mut case: OrderCase) -> Option<OrderCase> {
     let mut entry = Rational::new(1.into(), 8.into());
     for j in 0..p {
         beta[1 + j] += &entry;
-        let factor = Rational::new((p as i64 - 1 - j as i64).into(), (j as i64 + 1).into());
+        let factor = Rational::new((p - 1 - j).into(), (j + 1).into());
         entry = -entry * factor;
     }
     case.formula = with_beta(formula, beta).filter(|mutant| mutant.formula().order() == p - 1)?;

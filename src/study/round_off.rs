@@ -3,7 +3,7 @@
 /// The order of the differences; a smooth series of `w` radians a sample is damped by `(w/2)^8`.
 const DIFFERENCES: usize = 8;
 /// Square root of the sum of the squared binomials of 8: what eighth differences make of white noise.
-const WHITE_NOISE_GAIN: f64 = 113.446_463_143_800_4;
+const WHITE_NOISE_GAIN: f64 = 113.446_022_407_134_22;
 /// The median of the absolute value of a standard normal variable.
 const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 

@@ -158,6 +158,7 @@ fn spatial_joint() -> impl Strategy<Value = JointCase> + Clone {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::robot::Severity;
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
@@ -165,7 +166,8 @@ mod tests {
         #[test]
         fn arms_read_without_complaint_and_start_away_from_singularity(arm in arms()) {
             let robot = Robot::from_urdf(&arm.urdf()).unwrap();
-            prop_assert!(robot.diagnostics().is_empty(), "{:?}", robot.diagnostics());
+            let loud = robot.diagnostics().iter().any(|found| found.severity > Severity::Note);
+            prop_assert!(!loud, "{:?}", robot.diagnostics());
             let chain = arm.chain().unwrap();
             prop_assert!((4..=9).contains(&chain.dof()));
             prop_assert!(chain.limit_violations(&arm.q0()).next().is_none());
