@@ -13,24 +13,24 @@ impl<const M: usize> GramCholesky<M> {
     /// Factorises `J J^T` for `J` given by its columns, of which the first `M` entries count.
     ///
     /// `None` when a pivot is not positive: the rows are dependent to working precision, or not finite.
+    #[inline]
     pub fn new(columns: &[Vector6<f64>]) -> Option<Self> {
         let mut factor = gram::<M>(columns);
+        // What lies above the diagonal is never read.
         for k in 0..M {
-            let mut pivot = factor[k][k];
-            for j in 0..k {
-                pivot -= factor[k][j] * factor[k][j];
-            }
+            let pivot = factor[k][k];
             if !(pivot > 0.0 && pivot.is_finite()) {
                 return None;
             }
             let reciprocal = pivot.sqrt().recip();
             factor[k][k] = reciprocal;
             for i in k + 1..M {
-                let mut entry = factor[i][k];
-                for j in 0..k {
-                    entry -= factor[i][j] * factor[k][j];
+                factor[i][k] *= reciprocal;
+            }
+            for i in k + 1..M {
+                for j in k + 1..=i {
+                    factor[i][j] -= factor[i][k] * factor[j][k];
                 }
-                factor[i][k] = entry * reciprocal;
             }
         }
         Some(Self { factor })
@@ -77,13 +77,15 @@ impl<const M: usize> GramCholesky<M> {
     }
 }
 
-/// The lower triangle of `J J^T`, summed column by column.
+/// `J J^T`, summed column by column: whole rows at a time, in constant bounds that the compiler can unroll.
+#[inline]
 fn gram<const M: usize>(columns: &[Vector6<f64>]) -> [[f64; M]; M] {
     let mut gram = [[0.0; M]; M];
     for column in columns {
+        let entries: [f64; M] = std::array::from_fn(|i| column[i]);
         for i in 0..M {
-            for j in 0..=i {
-                gram[i][j] += column[i] * column[j];
+            for j in 0..M {
+                gram[i][j] += entries[i] * entries[j];
             }
         }
     }
