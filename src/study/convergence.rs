@@ -172,7 +172,7 @@ impl Convergence {
     /// Three neighbouring rungs, two pairs, must lie `floor_margin` times above the floor. The order is confirmed when the
     /// finest pair is within the tolerance of it and the one before within twice that. It is not reached (or
     /// exceeded) when both slopes are alike and head elsewhere: the limit that the last two slopes point to, where they approach the
-    /// claim, else the finest slope itself, is more than a half away from it. Anything else is not decided.
+    /// claim, else the finest slope itself, is more than a half and the tolerance away from it. Anything else is not decided.
     ///
     /// ```
     /// use kinstep::study::{Convergence, Criteria};
@@ -243,8 +243,8 @@ fn name_pre_asymptotic(marks: &mut [Mark], slopes: &[f64], finest: f64) {
 }
 
 fn verdict(claimed: usize, before: f64, finest: f64, ratio: f64, criteria: &Criteria) -> Verdict {
-    /// Slopes that head further away than this from a whole number head for another one.
-    const ELSEWHERE: f64 = 0.5;
+    // Beyond the middle between two whole numbers, and by the tolerance, slopes head for the other one.
+    let elsewhere = 0.5 + criteria.tolerance;
     let order = claimed as f64;
     let off = |slope: f64| (slope - order).abs();
     if off(finest) <= criteria.tolerance && off(before) <= 2.0 * criteria.tolerance {
@@ -259,9 +259,9 @@ fn verdict(claimed: usize, before: f64, finest: f64, ratio: f64, criteria: &Crit
         beyond if (beyond - order) * (finest - order) < 0.0 => order,
         limit => limit,
     };
-    if settled && limit < order - ELSEWHERE {
+    if settled && limit < order - elsewhere {
         Verdict::NotReached { claimed, slope: finest }
-    } else if settled && limit > order + ELSEWHERE {
+    } else if settled && limit > order + elsewhere {
         Verdict::Exceeded { claimed, slope: finest }
     } else {
         Verdict::Undecidable(Undecidable::Unsettled { before, finest })

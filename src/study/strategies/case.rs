@@ -209,9 +209,10 @@ pub fn order_at_fixed_gain() -> impl Strategy<Value = OrderCase> {
 fn ladder_for(order: usize) -> Option<Ladder> {
     match order {
         0..=3 => Ladder::halvings(DURATION, 256, 5),
-        4 => Ladder::halvings(DURATION, 128, 6),
-        5 => Ladder::half_octaves(DURATION, 128, 9),
-        _ => Ladder::half_octaves(DURATION, 96, 9),
+        4 => Ladder::halvings(DURATION, 128, 7),
+        // Where the loop forgets slowly, the order comes out late: these go on until round-off ends them.
+        5 => Ladder::half_octaves(DURATION, 128, 12),
+        _ => Ladder::half_octaves(DURATION, 96, 13),
     }
     .ok()
 }
