@@ -9,11 +9,11 @@
 //! use proptest::test_runner::TestRunner;
 //!
 //! let mut runner = TestRunner::deterministic();
-//! let case = order_at_fixed_step().new_tree(&mut runner)?.current();
+//! let case = order_at_fixed_step().new_tree(&mut runner).unwrap().current();
 //! println!("{case}"); // the row, the feedback, the path and the URDF
 //! let report = case.study()?;
 //! assert!(!report.task_transient.is_some_and(|seen| seen.verdict.is_not_reached()), "{case}\n{report}");
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! # Ok::<(), kinstep::planner::PlannerError>(())
 //! ```
 
 mod arm;
