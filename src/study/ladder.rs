@@ -8,7 +8,7 @@ use thiserror::Error;
 pub struct Rung {
     /// Steps of the run.
     pub steps: usize,
-    /// The sampling gap [s]: the duration over the steps.
+    /// The sampling gap \[s\]: the duration over the steps.
     pub sigma: f64,
 }
 
@@ -19,15 +19,15 @@ pub enum LadderError {
     /// The duration is not a positive number.
     #[error("the duration of a ladder is {value} s; it must be a positive number")]
     Duration {
-        /// What was given [s].
+        /// What was given \[s\].
         value: f64,
     },
     /// A gap is not positive, or longer than the duration.
     #[error("sigma is {value} s; it must be positive and at most the duration, {duration} s")]
     Sigma {
-        /// What was given [s].
+        /// What was given \[s\].
         value: f64,
-        /// The duration [s].
+        /// The duration \[s\].
         duration: f64,
     },
     /// A gap would need a shortened last step.
@@ -35,11 +35,11 @@ pub enum LadderError {
         "sigma = {value} s does not divide the duration {duration} s, and a shortened last step would spoil the order; the nearest that does is {nearest} s"
     )]
     DoesNotDivide {
-        /// What was given [s].
+        /// What was given \[s\].
         value: f64,
-        /// The duration [s].
+        /// The duration \[s\].
         duration: f64,
-        /// The nearest gap that divides it [s].
+        /// The nearest gap that divides it \[s\].
         nearest: f64,
     },
     /// The gaps do not become finer from rung to rung.
@@ -74,7 +74,7 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// The ladder of these numbers of steps over `duration` [s].
+    /// The ladder of these numbers of steps over `duration` \[s\].
     ///
     /// # Errors
     /// [`LadderError`]: no rung, a rung without steps, steps that do not increase, an unusable duration.
@@ -92,7 +92,7 @@ impl Ladder {
         Ok(Self { duration, steps })
     }
 
-    /// The ladder of these gaps [s], coarsest first.
+    /// The ladder of these gaps \[s\], coarsest first.
     ///
     /// # Errors
     /// [`LadderError`]: as [`from_steps`](Self::from_steps), and for a gap that does not divide the duration.
@@ -101,7 +101,7 @@ impl Ladder {
         Self::from_steps(duration, steps)
     }
 
-    /// `rungs` rungs over `duration` [s], the coarsest of `coarsest` steps, each half the gap of the one before.
+    /// `rungs` rungs over `duration` \[s\], the coarsest of `coarsest` steps, each half the gap of the one before.
     ///
     /// # Errors
     /// [`LadderError`]: no rung, no steps, an unusable duration.
@@ -120,7 +120,7 @@ impl Ladder {
         Self::from_steps(duration, steps)
     }
 
-    /// How long every run takes [s].
+    /// How long every run takes \[s\].
     pub fn duration(&self) -> f64 {
         self.duration
     }
@@ -130,7 +130,7 @@ impl Ladder {
         self.steps.iter().map(|&steps| self.rung(steps))
     }
 
-    /// The gaps [s], coarsest first.
+    /// The gaps \[s\], coarsest first.
     pub fn sigmas(&self) -> Vec<f64> {
         self.rungs().map(|rung| rung.sigma).collect()
     }

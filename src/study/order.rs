@@ -54,7 +54,7 @@ pub struct OrderReport {
 }
 
 impl OrderReport {
-    /// The sampling gaps [s], coarsest first.
+    /// The sampling gaps \[s\], coarsest first.
     pub fn sigmas(&self) -> Vec<f64> {
         self.rungs.iter().map(|rung| rung.sigma).collect()
     }

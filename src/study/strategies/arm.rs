@@ -24,9 +24,9 @@ pub struct JointCase {
     pub slides: bool,
     /// Direction of its axis, of any length.
     pub axis: [i8; 3],
-    /// From this joint to the next [1/20 m].
+    /// From this joint to the next \[1/20 m\].
     pub offset: [i8; 3],
-    /// Where it starts [5 degrees or 1/20 m].
+    /// Where it starts \[5 degrees or 1/20 m\].
     pub at: i8,
 }
 
@@ -75,7 +75,7 @@ impl ArmCase {
         Robot::from_urdf(&self.urdf()).ok()?.chain("base", "tip").ok()
     }
 
-    /// Where the joints start [rad or m].
+    /// Where the joints start \[rad or m\].
     pub fn q0(&self) -> Vec<f64> {
         let value = |joint: &JointCase| {
             let at = f64::from(joint.at);

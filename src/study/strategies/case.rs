@@ -13,7 +13,7 @@ use num_traits::ToPrimitive;
 use proptest::prelude::*;
 use std::fmt;
 
-/// How long every path takes [s].
+/// How long every path takes \[s\].
 const DURATION: f64 = 4.0;
 /// Errors decay at least this fast at every rung.
 const RADIUS: f64 = 0.95;
@@ -61,7 +61,7 @@ impl OrderCase {
         Arm::new("arm", self.chain.clone(), q0, self.arm.task, motion)
     }
 
-    /// The planner at a sampling gap [s].
+    /// The planner at a sampling gap \[s\].
     ///
     /// # Errors
     /// What the builder refuses.

@@ -12,7 +12,7 @@
 //! let case = order_at_fixed_step().new_tree(&mut runner).unwrap().current();
 //! println!("{case}"); // the row, the feedback, the path and the URDF
 //! let report = case.study()?;
-//! assert!(!report.task_transient.is_some_and(|seen| seen.verdict.is_not_reached()), "{case}\n{report}");
+//! assert!(!report.task_transient.as_ref().is_some_and(|seen| seen.verdict.is_not_reached()), "{case}\n{report}");
 //! # Ok::<(), kinstep::planner::PlannerError>(())
 //! ```
 

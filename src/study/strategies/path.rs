@@ -13,7 +13,7 @@ use std::fmt;
 /// The form of a closed path.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// `sum_m (a_m (cos 2 pi m u - 1) + b_m sin 2 pi m u) / m^3` with the vectors `(a_m, b_m)` [1/10].
+    /// `sum_m (a_m (cos 2 pi m u - 1) + b_m sin 2 pi m u) / m^3` with the vectors `(a_m, b_m)` \[1/10\].
     Fourier(Vec<[[i8; 3]; 2]>),
     /// A circle.
     Circle,
@@ -32,12 +32,12 @@ pub enum Shape {
 pub struct PathCase {
     /// Its form.
     pub shape: Shape,
-    /// By how much the curves by angle are turned in their plane [degrees].
+    /// By how much the curves by angle are turned in their plane \[degrees\].
     pub rotation: i16,
-    /// How far the tip leans about the path's axis and back [rad], as a multiple of the extent.
+    /// How far the tip leans about the path's axis and back \[rad\], as a multiple of the extent.
     pub lean: u8,
-    /// The largest distance from the start [m], as a fraction (in hundredths) of the arm's smallest singular value at the
-    /// start: about the joint motion that the path asks for [1/100 rad].
+    /// The largest distance from the start \[m\], as a fraction (in hundredths) of the arm's smallest singular value at the
+    /// start: about the joint motion that the path asks for \[1/100 rad\].
     pub extent: u8,
 }
 
@@ -52,7 +52,7 @@ impl PathCase {
         LeaningPath { unit, scale: extent / size, lean: extent * f64::from(self.lean) }
     }
 
-    /// The largest distance from the start [m], for an arm with that smallest singular value.
+    /// The largest distance from the start \[m\], for an arm with that smallest singular value.
     pub fn extent(&self, smallest_singular_value: f64) -> f64 {
         f64::from(self.extent) / 100.0 * smallest_singular_value
     }
