@@ -98,17 +98,17 @@ fn assert_orders(cases: u32, strategy: &impl Strategy<Value = OrderCase>) {
 
 #[test]
 fn at_fixed_h_the_task_error_has_one_order_more_than_the_formula() {
-    assert_orders(96, &order_at_fixed_step());
+    assert_orders(256, &order_at_fixed_step());
 }
 
 #[test]
 fn at_fixed_gain_the_task_error_has_the_order_of_the_formula() {
-    assert_orders(96, &order_at_fixed_gain());
+    assert_orders(256, &order_at_fixed_gain());
 }
 
 #[test]
 fn a_step_well_beyond_the_range_ends_diverged() {
-    check(96, &diverging(), |case: UnstableCase| {
+    check(256, &diverging(), |case: UnstableCase| {
         let planner = case.planner().map_err(|error| TestCaseError::fail(error.to_string()))?;
         let plan = planner.run();
         let lost_rank = plan.arms[0].smallest_singular_value.0 < 1e-2;

@@ -223,7 +223,8 @@ fn gain_ladder(formula: &Formula) -> Option<(f64, Ladder)> {
     let steps = feedback_steps(formula, RADIUS);
     // Small steps give clean slopes: begin in the lower half of what there is.
     let h = steps[..steps.len().div_ceil(2)].last().copied()?;
-    let coarsest = if formula.order() <= 4 { 256 } else { 128 };
+    // The ladder is short, because the step shrinks with sigma: it has to begin where paths are well resolved.
+    let coarsest = if formula.order() <= 4 { 512 } else { 256 };
     let rungs = Ladder::half_octaves(DURATION, coarsest, RUNGS).ok()?;
     let usable = rungs.rungs().take_while(|rung| {
         let here = h * coarsest as f64 / rung.steps as f64;
