@@ -48,7 +48,7 @@ Setting one of law.h and law.gain takes the other away.")]
     /// Run the paper's experiments beside the bounds that it states; exit 1 if one is missed
     #[command(after_help = "Examples:\n  kinstep reproduce\n  kinstep reproduce --out paper --json")]
     Reproduce(ReproduceArguments),
-    /// Look at difference formulas: list, show, check rows of your own
+    /// Look at difference formulas and make new ones: list, show, check, derive, search, compare
     #[command(
         subcommand,
         after_help = "Example:\n  kinstep formula show --difference 24,-5,-12,-6,-4,3 --denominator 48"
@@ -111,6 +111,120 @@ Examples:
   kinstep formula check mine.toml
   kinstep formula check draft.toml --draft      computes what is not declared and prints finished rows")]
     Check(FormulaCheck),
+    /// Derive all formulas of a stencil and an order, exactly; with parameters, one of them as a row
+    #[command(after_help = "\
+Examples:
+  kinstep formula derive --samples 1,0,-1,-2,-3,-4 --order 3
+  kinstep formula derive --samples 1,0,-1,-2,-3,-4 --order 3 --parameters -1/12,1/16
+  kinstep formula derive --samples 1,0 --derivatives 0,-1,-2,-3 --order 4       Adams-Bashforth
+  kinstep formula derive --samples 1,0,-1,-3 --derivatives 1,0 --order 4        with a gap, implicit
+
+Offsets count samples from t_n: 1 is the new one, 0 the present one, -1 the one before.")]
+    Derive(FormulaDerive),
+    /// Search for formulas of given steps and order that are best at something
+    #[command(after_help = "\
+Examples:
+  kinstep formula search --steps 5 --order 3 --objective range
+  kinstep formula search --steps 7 --order 4 --objective decay --denominator 480 --seconds 30
+  kinstep formula search --steps 8 --order 5 --beat la9-240 --out found
+  kinstep formula search --steps 5 --order 4 --family corrected --objective noise
+
+The same arguments and seed find the same rows, whatever the number of threads, unless --seconds cuts the search short.")]
+    Search(FormulaSearch),
+    /// Compare formulas side by side
+    #[command(after_help = "Example:\n  kinstep formula compare la6-wang-guo la6-twenty-four split-ab4")]
+    Compare(FormulaCompare),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct FormulaDerive {
+    /// Offsets of the states, newest first
+    #[arg(long, value_name = "O,...", allow_hyphen_values = true, value_delimiter = ',', required = true)]
+    pub(super) samples: Vec<i64>,
+
+    /// Offsets of the derivatives
+    #[arg(
+        long,
+        value_name = "O,...",
+        allow_hyphen_values = true,
+        value_delimiter = ',',
+        default_value = "0"
+    )]
+    pub(super) derivatives: Vec<i64>,
+
+    /// The order that every formula is to have at least
+    #[arg(long)]
+    pub(super) order: usize,
+
+    /// A value for each free parameter: integers, fractions or decimals
+    #[arg(long, value_name = "P,...", allow_hyphen_values = true)]
+    pub(super) parameters: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct FormulaSearch {
+    /// Number of steps s
+    #[arg(long)]
+    pub(super) steps: usize,
+
+    /// Order p
+    #[arg(long)]
+    pub(super) order: usize,
+
+    /// What to be best at: range, decay, error-constant, noise, steady, economy, or weights such as range=2,decay=1
+    #[arg(long, default_value = "range")]
+    pub(super) objective: String,
+
+    /// Look for rows at least as good as this one in range, error and decay, and better in one of them
+    #[arg(long, value_name = "ID", conflicts_with = "objective")]
+    pub(super) beat: Option<String>,
+
+    /// The kind of rows: look-ahead, general, split or corrected
+    #[arg(long, default_value = "look-ahead")]
+    pub(super) family: String,
+
+    /// The largest denominator of the free coefficients
+    #[arg(long, default_value_t = 480)]
+    pub(super) denominator: u32,
+
+    /// Only rows whose feedback range reaches at least this far
+    #[arg(long, value_name = "H", default_value_t = 0.0)]
+    pub(super) least_range: f64,
+
+    /// Seed of the random starting points
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+
+    /// Number of starting points; the budget of the search
+    #[arg(long, default_value_t = 64)]
+    pub(super) starts: usize,
+
+    /// Stop after so many seconds with what is there
+    #[arg(long, default_value_t = 60.0)]
+    pub(super) seconds: f64,
+
+    /// Number of threads; all processors unless given
+    #[arg(long)]
+    pub(super) threads: Option<usize>,
+
+    /// How many rows to print
+    #[arg(long, default_value_t = 3)]
+    pub(super) rows: usize,
+
+    /// Folder for rows.toml and front.csv; made if it is not there
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+
+    /// Replace files that are already there
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct FormulaCompare {
+    /// Ids of two or more formulas
+    #[arg(value_name = "ID", required = true, num_args = 2..)]
+    pub(super) ids: Vec<String>,
 }
 
 #[derive(Debug, Args)]

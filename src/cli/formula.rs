@@ -6,7 +6,8 @@ use super::arguments::{FormulaCheck, FormulaCommand, FormulaShow};
 use super::failure::{Exit, Failure};
 use super::formula_card::{Card, Cards, FormulaList};
 use super::output::Output;
-use crate::formula::{DefectKind, FormulaTable, Row, Strictness, read_rows};
+use super::{formula_compare, formula_derive, formula_search};
+use crate::formula::{CheckedRow, DefectKind, FormulaTable, Row, Strictness, read_rows};
 use crate::scenario::{read_text, row_refusals};
 
 /// What a row that is typed at the prompt is called.
@@ -26,6 +27,9 @@ pub(super) fn run(
         }
         FormulaCommand::Show(arguments) => show(&cards(arguments, &own_rows)?, output),
         FormulaCommand::Check(arguments) => check(arguments, output),
+        FormulaCommand::Derive(arguments) => formula_derive::run(arguments, output),
+        FormulaCommand::Search(arguments) => formula_search::run(arguments, &own_rows, output),
+        FormulaCommand::Compare(arguments) => formula_compare::run(arguments, &own_rows, output),
     }
 }
 
@@ -61,6 +65,15 @@ fn cards(arguments: &FormulaShow, own_rows: &[Row]) -> Result<Cards, Failure> {
         return Err(Failure::usage(ways));
     }
     Ok(Cards::new(cards))
+}
+
+/// The row of an id, the user's own before the built-in ones.
+pub(super) fn checked(id: &str, own_rows: &[Row]) -> Result<CheckedRow, Failure> {
+    let row = match own_rows.iter().find(|row| row.id() == id) {
+        Some(row) => row,
+        None => FormulaTable::builtin().get(id).map_err(|unknown| Failure::usage(unknown.to_string()))?.row(),
+    };
+    Ok(row.clone().check())
 }
 
 fn typed_row(arguments: &FormulaShow) -> Option<Result<Row, DefectKind>> {

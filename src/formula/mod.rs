@@ -5,6 +5,7 @@
 
 mod analysis;
 mod check;
+pub mod derive;
 mod draft;
 mod error;
 mod feedback_range;
@@ -15,6 +16,7 @@ mod order;
 mod radius;
 mod read;
 mod row;
+pub mod search;
 mod table;
 
 pub use analysis::Analysis;
