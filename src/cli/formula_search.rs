@@ -39,6 +39,14 @@ pub(super) fn run(arguments: &FormulaSearch, own_rows: &[Row], output: &mut Outp
         output.remark(&format!("the search was cut short {cause}; this is what it had found"));
     }
     let report = Report::new(&options, &outcome);
+    if let (Objective::Beat(target), true) =
+        (&options.objective, outcome.rows.iter().all(|row| row.merit >= 0.0))
+    {
+        output.remark(&format!(
+            "no row within the denominators surpasses {} without being worse in something",
+            target.id
+        ));
+    }
     if let Some(folder) = folder {
         folder.write(ROWS, |out| out.write_all(report.toml().as_bytes()))?;
         folder.write(FRONT, |out| out.write_all(front_csv(&outcome.front).as_bytes()))?;

@@ -243,7 +243,7 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
 
     /// The best candidate that the exact decision confirms, then the simplest within 2 %, 10 % and more of it.
     fn pick(&self, judge: &Judge<'_>, candidates: Vec<Candidate>) -> Vec<Found> {
-        const SLACK: [f64; 5] = [0.02, 0.1, 0.25, 0.5, 1.0];
+        const SLACK: [f64; 5] = [0.02, 0.05, 0.1, 0.2, 0.4];
         let mut rows: Vec<Found> = Vec::new();
         let word = judge.objective.word();
         let Some(best) =
@@ -254,6 +254,9 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
         let best_merit = best.merit;
         rows.push(best);
         let mut simplest = candidates;
+        if matches!(judge.objective, Objective::Beat(_)) && best_merit < 0.0 {
+            simplest.retain(|candidate| candidate.merit < 0.0);
+        }
         simplest.sort_by_key(|candidate| candidate.denominator);
         for slack in SLACK {
             if rows.len() >= self.options.rows {
