@@ -1,5 +1,7 @@
 //! From a stencil with a gap to a checked row: the exact family first, then one member of it.
 
+#![allow(clippy::print_stdout)]
+
 use kinstep::formula::FormulaTable;
 use kinstep::formula::derive::{DerivedFamily, Stencil, barrier};
 use kinstep::math::parse_rational;

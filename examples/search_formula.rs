@@ -1,5 +1,7 @@
 //! The search as a library: the row with the fastest decay, and one that surpasses a known formula everywhere.
 
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
 use kinstep::formula::FormulaTable;
 use kinstep::formula::search::{Family, Objective, Observer, Options, Progress, front_csv, search};
 

@@ -1,5 +1,7 @@
 //! `kinstep formula derive`: a stencil and an order in, the exact family out.
 
+use std::fmt::Write as _;
+
 use serde::Serialize;
 
 use super::arguments::FormulaDerive;
@@ -155,14 +157,15 @@ impl Show for Derivation {
             .collect();
         let mut text = format!("{}\n{}\n", self.heading(), self.table());
         for Coefficient { of, value } in &self.coefficients {
-            text += &format!("{of:<6} {}\n", value.text);
+            // Writing to a String can not fail.
+            let _ = writeln!(text, "{of:<6} {}", value.text);
         }
         let constant = if self.is_difference { "error constant c" } else { "constant C of one step" };
-        text += &format!("\n{constant} = {}\n", self.error_constant.text);
-        match &self.member {
-            Some(cards) => text += &format!("\n{}", cards.text()),
-            None => text += &format!("{}; give --parameters for a row.\n", parameters.join(", ")),
-        }
+        let _ = writeln!(text, "\n{constant} = {}", self.error_constant.text);
+        let _ = match &self.member {
+            Some(cards) => write!(text, "\n{}", cards.text()),
+            None => writeln!(text, "{}; give --parameters for a row.", parameters.join(", ")),
+        };
         text
     }
 }

@@ -1,5 +1,6 @@
 //! `kinstep formula search`: the best rows of given steps and order.
 
+use std::fmt::Write as _;
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -236,7 +237,8 @@ impl Show for Report {
             toml.join("\n"),
         );
         if !self.front.is_empty() {
-            text += &format!("\nPareto front of range, error and decay:\n\n{}", table(&self.front));
+            // Writing to a String can not fail.
+            let _ = write!(text, "\nPareto front of range, error and decay:\n\n{}", table(&self.front));
         }
         text
     }

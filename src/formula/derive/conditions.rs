@@ -52,7 +52,9 @@ impl Echelon {
             return if contradicts { Addition::Contradictory } else { Addition::Implied };
         };
         let scale = equation[pivot].clone();
-        equation.iter_mut().for_each(|c| *c /= &scale);
+        for c in &mut equation {
+            *c /= &scale;
+        }
         for row in &mut self.rows {
             subtract_multiple(row, &equation, pivot);
         }

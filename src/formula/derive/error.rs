@@ -81,6 +81,7 @@ pub enum DeriveError {
     Row(#[from] DefectKind),
 }
 
+#[expect(clippy::ref_option, reason = "the message hands over its field")]
 fn feasible(highest: &Option<usize>) -> String {
     match highest {
         Some(order) => {

@@ -136,7 +136,7 @@ mod tests {
                 sum += r * &power;
                 power *= &third;
             }
-            let scale = Rational::new(3.into(), 2.into()).pow((s - 1) as i32);
+            let scale = Rational::new(3.into(), 2.into()).pow(i32::try_from(s - 1).expect("few steps"));
             prop_assert_eq!(rho, sum * scale);
         }
     }

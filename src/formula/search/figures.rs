@@ -197,7 +197,7 @@ impl FloatRow {
 
     /// Returns |C| of a row of order p.
     pub(super) fn per_step(&self, order: usize) -> f64 {
-        let next = order as i32 + 1;
+        let next = i32::try_from(order).unwrap_or(i32::MAX - 1) + 1;
         let factorial: f64 = (1..=next).map(f64::from).product();
         let states: f64 = self.alpha.iter().enumerate().map(|(j, a)| a * (1.0 - j as f64).powi(next)).sum();
         let slopes: f64 =

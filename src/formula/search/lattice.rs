@@ -52,7 +52,9 @@ fn moves(dimension: usize) -> Vec<Vec<i64>> {
     let mut moves = Vec::new();
     let mut add = |changes: &[(usize, i64)]| {
         let mut step = vec![0; dimension];
-        changes.iter().for_each(|&(k, d)| step[k] = d);
+        for &(k, d) in changes {
+            step[k] = d;
+        }
         moves.push(step);
     };
     for k in 0..dimension {

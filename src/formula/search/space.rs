@@ -210,7 +210,9 @@ impl Space {
             if !(lead > 0.0) {
                 return None;
             }
-            alpha.iter_mut().for_each(|a| *a /= lead);
+            for a in &mut alpha {
+                *a /= lead;
+            }
             let beta = unit().iter().map(|b| b / lead).collect();
             return Some(FloatRow { alpha, beta, feedback: unit() });
         }
