@@ -38,3 +38,23 @@ fn refuses_an_unknown_tip_with_the_nearest_names() {
     assert!(matches!(robot.chain("tip", "tip"), Err(ChainError::SameLink { .. })));
     assert!(matches!(robot.chain("b", "tip"), Err(ChainError::Rigid { .. })));
 }
+
+#[test]
+fn a_driver_on_the_path_keeps_its_own_place() {
+    let urdf = r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+        <joint name="j1" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/><mimic joint="j3" multiplier="2"/></joint>
+        <joint name="j2" type="continuous"><parent link="b"/><child link="c"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/></joint>
+        <joint name="j3" type="continuous"><parent link="c"/><child link="d"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/></joint></robot>"#;
+    let robot = Robot::from_urdf(urdf).unwrap();
+    let names = |base: &str, tip: &str| -> Vec<String> {
+        robot.chain(base, tip).unwrap().joints().iter().map(|joint| joint.name.clone()).collect()
+    };
+    assert_eq!(names("a", "d"), ["j2", "j3"]);
+    assert_eq!(names("d", "a"), ["j3", "j2"]);
+    // Off the path, the driver stands where its follower is.
+    assert_eq!(names("a", "c"), ["j3", "j2"]);
+    // j1 turns by twice j3: at (j2, j3) = (0, 0.3) the tip link is turned by 0.9.
+    let chain = robot.chain("a", "d").unwrap();
+    let pose = chain.forward(&[0.0, 0.3], &mut chain.scratch()).pose();
+    assert!((pose.rotation.angle() - 0.9).abs() < 1e-15);
+}

@@ -75,7 +75,8 @@ impl Chain {
         self.joints.len()
     }
 
-    /// The joints that the pose depends on, one per column, in the order in which the path meets them.
+    /// The joints that the pose depends on, one per column, in path order. A joint off the path that moves joints on it
+    /// stands at the place of the first of them.
     pub fn joints(&self) -> &[ChainJoint] {
         &self.joints
     }

@@ -21,7 +21,7 @@ struct Moving {
 /// `M(axis, x) = R M(z, x) R^T`, where R turns z onto the axis, all constants between two motions merge. A
 /// negative multiplier turns the axis round, and an offset is a constant motion, so only `|multiplier|` stays.
 pub(super) fn fold(robot: &Robot, steps: &[Step], base: &str, tip: &str) -> Result<Chain, ChainError> {
-    let mut columns = Columns::default();
+    let mut columns = Columns::of(robot, steps);
     let mut moving: Vec<Moving> = Vec::new();
     let mut constant = IsometryMatrix3::identity();
     for step in steps {
@@ -61,17 +61,16 @@ fn assemble(
     tip: &str,
 ) -> Chain {
     let after = moving.iter().skip(1).map(|next| &next.before).chain([last]);
-    let mut open = 0;
+    let mut open = vec![true; joints.len()];
     let mut segments = Vec::with_capacity(moving.len());
     for (own, after) in moving.iter().zip(after) {
         segments.push(Segment {
             after: Frame::new(after),
             multiplier: own.multiplier,
             column: own.column,
-            opens_column: own.column == open,
+            opens_column: std::mem::take(&mut open[own.column]),
             motion: own.motion,
         });
-        open = open.max(own.column + 1);
     }
     let start = Frame::new(&moving[0].before);
     Chain { base: base.to_owned(), tip: tip.to_owned(), joints, reach, start, segments }
@@ -107,28 +106,38 @@ fn reach(moving: &[Moving], last: &IsometryMatrix3<f64>, joints: &[ChainJoint]) 
     constant + travels.sum::<f64>()
 }
 
-/// The columns of the chain in order of first appearance.
-#[derive(Default)]
+/// The columns of the chain in path order: every joint that moves on its own has its place; a joint that is followed
+/// from elsewhere takes the place of the first of its followers.
 struct Columns {
     drivers: Vec<usize>,
     joints: Vec<ChainJoint>,
 }
 
 impl Columns {
+    fn of(robot: &Robot, steps: &[Step]) -> Self {
+        let movable = || steps.iter().map(|step| step.joint).filter(|&i| robot.joints[i].kind.is_movable());
+        let is_on_path = |driver: usize| movable().any(|index| index == driver);
+        let mut drivers = Vec::new();
+        for index in movable() {
+            let driver = robot.joints[index].mimic.map_or(index, |mimic| mimic.driver);
+            let has_own_place = driver != index && is_on_path(driver);
+            if !has_own_place && !drivers.contains(&driver) {
+                drivers.push(driver);
+            }
+        }
+        let joint = |&driver: &usize| {
+            let Joint { name, kind, limits, .. } = &robot.joints[driver];
+            ChainJoint { name: name.clone(), kind: *kind, limits: *limits }
+        };
+        Self { joints: drivers.iter().map(joint).collect(), drivers }
+    }
+
     /// Returns the column of a joint of the path: its own, or that of the joint it follows.
     fn place(&mut self, robot: &Robot, index: usize) -> Result<usize, ChainError> {
         let joint = &robot.joints[index];
         let driver = joint.mimic.map_or(index, |mimic| mimic.driver);
-        let column = self.drivers.iter().position(|&known| known == driver).unwrap_or_else(|| {
-            let driving = &robot.joints[driver];
-            self.drivers.push(driver);
-            self.joints.push(ChainJoint {
-                name: driving.name.clone(),
-                kind: driving.kind,
-                limits: driving.limits,
-            });
-            self.drivers.len() - 1
-        });
+        let known = self.drivers.iter().position(|&known| known == driver);
+        let column = known.expect("every driver of the path was given a column");
         let limits = &mut self.joints[column].limits;
         *limits = narrowed(*limits, joint);
         if limits.lower > limits.upper {
