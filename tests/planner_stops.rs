@@ -6,7 +6,7 @@ use kinstep::nalgebra::{IsometryMatrix3, Vector3};
 use kinstep::planner::{Arm, LimitKind, Plan, PlanStatus, PlannerError};
 use kinstep::robot::{Chain, Robot, embedded};
 use kinstep::scheme;
-use kinstep::task::{Circle, Line, Motion, Path, Planar, Quintic, Sin2, TaskKind, TimeLaw};
+use kinstep::task::{Circle, Line, Motion, Path, Planar, Plane, Quintic, Sin2, TaskKind, TimeLaw, Tricuspid};
 
 const DURATION: f64 = 4.0;
 
@@ -124,4 +124,31 @@ fn two_links(elbow: &str) -> String {
         <axis xyz="0 0 1"/><limit lower="{lower}" upper="{upper}" velocity="100" effort="1"/></joint>
         <joint name="end" type="fixed"><parent link="fore"/><child link="tip"/><origin xyz="1 0 0"/></joint></robot>"#
     )
+}
+
+#[test]
+fn an_arm_with_too_few_joints_can_follow_what_it_can_reach_and_nothing_else() {
+    let urdf = r#"<robot name="slide"><link name="base"/><link name="tip"/><joint name="slide" type="prismatic">
+        <parent link="base"/><child link="tip"/><axis xyz="1 0 0"/><limit lower="-2" upper="2" velocity="9" effort="1"/>
+        </joint></robot>"#;
+    let chain = || Robot::from_urdf(urdf).unwrap().chain("base", "tip").unwrap();
+    let along = run(arm(chain(), &[0.1], line(0.8, 0.0), Sin2));
+    assert_eq!(along.status, PlanStatus::Completed, "{:?}", along.reason);
+    assert!(along.arms[0].max_error < 1e-4);
+    assert!(along.warnings.iter().any(|warning| warning.contains("1 joints for the 2 components")));
+    let across = run(arm(chain(), &[0.1], Planar::whole(Circle { radius: 0.05 }), Sin2));
+    assert_eq!(across.status, PlanStatus::Unreachable, "{:?}", across.reason);
+}
+
+#[test]
+fn an_arm_that_leaves_the_workspace_is_damped_before_it_jumps() {
+    // A large path that the arm can follow for two seconds.
+    let path = Planar::new(Tricuspid { radius: 0.4 }, Plane::Xy, 1.571, 0.0, std::f64::consts::TAU);
+    let plan = run(arm(planar(), &[-0.847, 0.1, 0.2, 0.3], path, Sin2));
+    assert_eq!(plan.status, PlanStatus::Unreachable, "{:?}", plan.reason);
+    let arm = &plan.arms[0];
+    let step =
+        |n: usize| (0..4).map(|i| (arm.position(n)[i] - arm.position(n - 1)[i]).abs()).fold(0.0, f64::max);
+    let jump = (1..plan.samples()).map(step).fold(0.0, f64::max);
+    assert!(jump < 0.3, "a joint moved by {jump} rad in one sample");
 }

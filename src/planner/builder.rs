@@ -164,6 +164,7 @@ impl PlannerBuilder {
         let h = self.feedback_step(formula, sigma, gamma_sum, &mut warnings)?;
         let starter = self.start.starter(formula);
         warn_about_start(formula, &starter, steps, &mut warnings);
+        warnings.extend(self.arms.iter().filter_map(too_few_joints));
 
         let x0: Vec<f64> = self.arms.iter().flat_map(|arm| arm.q0.iter().copied()).collect();
         let mut field = SynchronousField {
@@ -320,6 +321,14 @@ fn warn_about_start(formula: &Formula, starter: &Starter<f64>, steps: usize, war
             formula.steps() - 1
         ));
     }
+}
+
+fn too_few_joints(arm: &Arm) -> Option<String> {
+    let (joints, rows) = (arm.chain.dof(), arm.task.rows());
+    (joints < rows).then(|| {
+        let (name, task) = (&arm.name, arm.task.name());
+        format!("arm `{name}` has {joints} joints for the {rows} components of a `{task}` task: most paths are out of its reach")
+    })
 }
 
 /// A criterion is integrated by `(alpha, beta)`: `sigma * rate * beta(1)` has to lie in that pair's own range.

@@ -10,8 +10,16 @@ use nalgebra::Vector6;
 const LOST_FRACTION_OF_REACH: f64 = 0.1;
 /// The orientation error at which a run is stopped \[rad\].
 const LOST_ORIENTATION: f64 = 1.0;
+/// The fraction of those bounds that an arm with fewer joints than task components is held to: the error of a path that it
+/// can not follow does not grow, it just stays.
+const WITH_TOO_FEW_JOINTS: f64 = 0.01;
+/// The fraction that an arm of a stable loop is held to once it came near a singularity: whatever it loses there, no
+/// feedback will bring back, and the velocities it would take grow with the error.
+const NEAR_SINGULARITY: f64 = 0.2;
+/// Within this many thresholds a configuration counts as near a singularity.
+const NEAR: f64 = 10.0;
 /// Below this fraction of those bounds an arm counts as back on its path after a singularity.
-const RECOVERED: f64 = 0.1;
+const RECOVERED: f64 = 0.05;
 
 /// What a plan says of itself.
 #[derive(Clone, Debug)]
@@ -156,6 +164,9 @@ impl Planner {
     }
 
     /// Goes to the next sample; does nothing once [finished](Self::is_finished).
+    ///
+    /// A run that stops does so at a sample that lies beyond its bounds: look at [`is_finished`](Self::is_finished) before
+    /// sending positions on.
     pub fn step(&mut self) {
         if self.is_finished() {
             return;
@@ -167,8 +178,10 @@ impl Planner {
             return;
         }
         self.stepper.evaluate(&mut self.field);
-        self.watch();
         self.check_lost();
+        if self.stop.is_none() {
+            self.watch();
+        }
     }
 
     /// Runs to the end and returns the trajectories.
@@ -179,17 +192,14 @@ impl Planner {
     /// Runs to the end, telling `progress` after every step how many of how many are done.
     pub fn run_with(mut self, mut progress: impl FnMut(usize, usize)) -> Plan {
         let mut arms: Vec<ArmPlan> = self.field.arms.iter().map(|r| empty_plan(r, self.steps())).collect();
-        loop {
-            let done = self.index();
-            self.record(&mut arms);
-            if self.is_finished() {
-                break;
-            }
+        self.record(&mut arms);
+        while !self.is_finished() {
             self.step();
-            if self.index() == done {
-                break;
+            // A sample at which the run stopped is not one to send to a robot.
+            if self.stop.is_none() {
+                self.record(&mut arms);
+                progress(self.index(), self.steps());
             }
-            progress(self.index(), self.steps());
         }
         self.conclude(arms)
     }
@@ -241,7 +251,7 @@ impl Planner {
     /// A run does not begin in a singular configuration: nothing could be promised about its first steps.
     fn check_start(&mut self) {
         for (was, runtime) in self.was_singular.iter_mut().zip(&self.field.arms) {
-            *was = is_singular(runtime);
+            *was = is_singular(runtime, 1.0);
         }
         if let Some(i) = self.was_singular.iter().position(|&singular| singular) {
             let runtime = &self.field.arms[i];
@@ -264,13 +274,15 @@ impl Planner {
     fn check_lost(&mut self) {
         for i in 0..self.field.arms.len() {
             let runtime = &self.field.arms[i];
-            let singular = is_singular(runtime);
+            let is_stable = self.description.is_stable;
+            let singular = is_singular(runtime, if is_stable { NEAR } else { 1.0 });
             let lost_rank = singular || self.was_singular[i];
-            if !is_within(runtime, 1.0) {
+            let fraction = if is_stable && lost_rank { NEAR_SINGULARITY } else { 1.0 };
+            if !is_within(runtime, fraction) {
                 self.stop = Some(self.diagnose(i, lost_rank));
                 return;
             }
-            let remembers = self.description.is_stable && !is_within(runtime, RECOVERED);
+            let remembers = is_stable && !is_within(runtime, RECOVERED);
             self.was_singular[i] = singular || (remembers && self.was_singular[i]);
         }
     }
@@ -296,8 +308,9 @@ impl Planner {
     }
 }
 
-fn is_singular(runtime: &ArmRuntime) -> bool {
-    runtime.resolution.smallest_singular_value < runtime.arm.law.threshold()
+/// Whether the smallest singular value lies below that many of the law's thresholds.
+fn is_singular(runtime: &ArmRuntime, thresholds: f64) -> bool {
+    runtime.resolution.smallest_singular_value < thresholds * runtime.arm.law.threshold()
 }
 
 /// Whether the task error lies within this fraction of the bounds at which a run is stopped; false for NaN.
@@ -306,6 +319,8 @@ fn is_within(runtime: &ArmRuntime, fraction: f64) -> bool {
     let orientation = runtime.error.fixed_rows::<3>(3).norm();
     let reach = runtime.arm.chain.reach();
     let bound = LOST_FRACTION_OF_REACH * if reach.is_finite() { reach } else { 1.0 };
+    let too_few = runtime.arm.chain.dof() < runtime.arm.task.rows();
+    let fraction = if too_few { WITH_TOO_FEW_JOINTS * fraction } else { fraction };
     position <= fraction * bound && orientation <= fraction * LOST_ORIENTATION
 }
 
