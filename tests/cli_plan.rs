@@ -4,6 +4,8 @@
 
 mod cli;
 
+use std::path::Path;
+
 use cli::{Desk, ROW, SMALL, kinstep};
 use serde_json::Value;
 
@@ -156,7 +158,7 @@ fn a_run_that_stops_is_exit_5_and_what_was_computed_is_written() {
     assert_eq!(singular["status"], "singular");
     let far = "arm.left.path={kind='line', displacement=[9, 0]}";
     let stopped = desk.run(&["plan", "s.toml", "--json", "--set", far]).expect(5).json();
-    assert_ne!(stopped["status"], "completed");
+    assert_eq!(stopped["status"], "unreachable");
     assert!(stopped["reason"].is_string());
 }
 
@@ -234,6 +236,79 @@ fn a_row_that_lies_is_not_run() {
     assert!(error["file"].as_str().unwrap().ends_with("lying.toml"));
     assert_eq!(plan("broken.toml")["line"], 4);
     assert!(plan("unstable.toml")["message"].as_str().unwrap().contains("not zero-stable"));
+}
+
+#[test]
+fn a_row_that_lies_is_set_aside_until_it_is_asked_for() {
+    let own = SMALL.replace("[law]", "formulas = [\"rows.toml\"]\n[law]");
+    let good = ROW.replace("mine", "good");
+    let rows = format!("{}\n{good}", ROW.replace("5/16", "5/8").replace("order = 3", "order = 4"));
+    let desk = Desk::new(&[("s.toml", SMALL), ("own.toml", &own), ("rows.toml", &rows)]);
+    for arguments in
+        [&["plan", "own.toml", "--json"][..], &["plan", "s.toml", "--json", "--formulas", "rows.toml"]]
+    {
+        for used in ["formula=la6-wang-guo", "formula=good"] {
+            let plan = desk.run(&[arguments, &["--set", used]].concat()).expect(0).json();
+            let warning = plan["warnings"][0].as_str().unwrap();
+            assert!(warning.contains("\"mine\"") && warning.contains("order 4"), "{warning}");
+        }
+        let error = desk.run(&[arguments, &["--set", "formula=mine"]].concat()).expect(4).error();
+        let message = error["message"].as_str().unwrap();
+        assert!(message.contains("order 4") && message.contains("order 3"), "{message}");
+        assert_eq!(error["line"], 5);
+    }
+    // A row that lies and takes the name of another leaves it open which one is meant.
+    std::fs::write(desk.path("rows.toml"), rows.replace("mine", "la6-wang-guo")).unwrap();
+    desk.run(&["plan", "own.toml"]).expect(4);
+    std::fs::write(desk.path("rows.toml"), rows.replace("denominator = 48", "denominator = \"1/0\""))
+        .unwrap();
+    desk.run(&["plan", "own.toml"]).expect(4);
+}
+
+#[test]
+fn what_was_planned_with_own_files_can_be_planned_again_from_the_folder() {
+    let urdf = include_str!("../robots/planar4.urdf");
+    let scenario = SMALL.replace("[law]", "formulas = [\"rows.toml\"]\n[law]").replace("planar4", "arm.urdf");
+    let files = [("s.toml", scenario.as_str()), ("rows.toml", ROW), ("arm.urdf", urdf)];
+    let desk = Desk::new(&files);
+    let more = ROW.replace("mine", "more");
+    std::fs::create_dir_all(desk.path("deep/out")).unwrap();
+    std::fs::write(desk.path("deep/out/inside.urdf"), urdf).unwrap();
+    std::fs::write(desk.path("more.toml"), &more).unwrap();
+    let set = ["--formulas", "more.toml", "--set", "formula=more"];
+    for (robot, first, second) in
+        [("arm.urdf", "one", "elsewhere/two"), ("deep/out/inside.urdf", "deep/out", "elsewhere/three")]
+    {
+        let robot = format!("arm.left.robot={robot}");
+        desk.run(&[&["plan", "s.toml", "--out", first, "--set", &robot], &set[..]].concat()).expect(0);
+        let again = desk.path(first).join("scenario.toml");
+        kinstep(&["plan", again.to_str().unwrap(), "--out", desk.path(second).to_str().unwrap()]).expect(0);
+        let bytes = |folder: &str| std::fs::read(desk.path(folder).join("trajectory.csv")).unwrap();
+        assert_eq!(bytes(first), bytes(second));
+        // The rows are recorded already; naming their file once more is no collision.
+        desk.run(&["plan", again.to_str().unwrap(), "--formulas", "more.toml"]).expect(0);
+    }
+    // A robot inside the folder moves with it.
+    std::fs::rename(desk.path("deep/out"), desk.path("moved")).unwrap();
+    desk.run(&["plan", "moved/scenario.toml"]).expect(0);
+}
+
+#[test]
+fn files_are_looked_for_beside_the_scenario_and_then_in_the_working_directory() {
+    let urdf = include_str!("../robots/planar4.urdf");
+    let desk = Desk::new(&[("rows.toml", ROW), ("arm.urdf", urdf)]);
+    std::fs::create_dir(desk.path("deep")).unwrap();
+    std::fs::write(desk.path("deep/s.toml"), SMALL).unwrap();
+    let set =
+        ["--set", "formulas=[\"rows.toml\"]", "--set", "formula=mine", "--set", "arm.left.robot=arm.urdf"];
+    desk.run(&[&["plan", "deep/s.toml"], &set[..]].concat()).expect(0);
+    for (set, name) in [("formulas=[\"no.toml\"]", "no.toml"), ("arm.left.robot=no.urdf", "no.urdf")] {
+        let error = desk.run(&["plan", "deep/s.toml", "--json", "--set", set]).expect(6).error();
+        let message = error["message"].as_str().unwrap();
+        let beside = Path::new("deep").join(name);
+        assert!(message.contains(&format!("({})", beside.display())), "{message}");
+        assert!(message.contains(&format!("working directory ({name})")), "{message}");
+    }
 }
 
 #[test]

@@ -28,6 +28,11 @@ impl Folder {
         }
     }
 
+    /// Where it is.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Writes a file that is whole or not there.
     pub(super) fn write(
         &self,

@@ -10,7 +10,7 @@ use super::progress::Progress;
 use crate::formula::FormulaTable;
 use crate::planner::{LimitKind, Plan, PlanStatus, Planner};
 use crate::report::{PlanCsv, PlanFormat, PlanJson, PlanText};
-use crate::scenario::{Scenario, ScenarioText, with_formulas};
+use crate::scenario::{FormulaRows, Scenario, ScenarioText};
 
 /// The scenario that runs without a file.
 const BUILTIN: &str = include_str!("../../examples/dual_panda.toml");
@@ -25,15 +25,18 @@ pub(super) fn run(
 ) -> Result<Exit, Failure> {
     let text = scenario_text(arguments)?;
     let scenario = text.scenario()?;
-    let table = formula_table(&text, &scenario, own)?;
-    let planner = scenario.planner(&table, text.folder()).map_err(|e| text.placed(e))?;
+    let rows = formula_rows(&text, &scenario, own)?;
+    let table = rows.table_for(&scenario.formula)?;
+    let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
     let folder =
         arguments.out.as_deref().map(|path| Folder::open(path, arguments.force, &NAMES)).transpose()?;
-    let plan = run_planner(planner);
+    let mut plan = run_planner(planner);
+    plan.warnings.extend(rows.warnings());
     if let Some(folder) = &folder {
         folder.write("trajectory.csv", |out| PlanCsv.write(&plan, out))?;
         folder.write("plan.json", |out| PlanJson.write(&plan, out))?;
-        folder.write("scenario.toml", |out| out.write_all(scenario.to_toml().as_bytes()))?;
+        let again = scenario.relocated(text.folder(), own, folder.path())?;
+        folder.write("scenario.toml", |out| out.write_all(again.to_toml().as_bytes()))?;
     }
     if output.wants_json() {
         output.text(&written(&PlanJson, &plan))?;
@@ -46,7 +49,7 @@ pub(super) fn run(
         output.text(&format!(
             "{head}{}{}",
             written(&PlanText, &plan),
-            closing(arguments, &plan, &table, &scenario)
+            closing(arguments, &plan, table, &scenario)
         ))?;
     }
     Ok(exit(&plan))
@@ -61,16 +64,14 @@ fn scenario_text(arguments: &PlanArguments) -> Result<ScenarioText, Failure> {
     Ok(text)
 }
 
-fn formula_table(
+fn formula_rows(
     text: &ScenarioText,
     scenario: &Scenario,
     own: Option<&Path>,
-) -> Result<FormulaTable, Failure> {
-    let table = scenario.formula_table(text.folder()).map_err(|e| text.placed(e))?;
-    match own {
-        Some(file) => Ok(with_formulas(&table, file)?),
-        None => Ok(table),
-    }
+) -> Result<FormulaRows, Failure> {
+    let mut rows = scenario.formula_rows(text.folder()).map_err(|e| text.placed(e))?;
+    own.map_or(Ok(()), |file| rows.add_file(file))?;
+    Ok(rows)
 }
 
 fn run_planner(planner: Planner) -> Plan {

@@ -37,15 +37,25 @@ impl FormulaTable {
     /// [`TableError`] with every unreadable row or, when all can be read, with every contradiction between what a row
     /// declares and what its numbers say.
     pub fn from_toml(text: &str) -> Result<Self, TableError> {
+        let (table, contradictions) = Self::believable_rows(text)?;
+        TableError::unless_none(contradictions).map(|()| table)
+    }
+
+    /// Returns the table of those rows of a TOML text that are what they declare, and the contradictions of the others, which
+    /// are left out of the table.
+    ///
+    /// # Errors
+    /// [`TableError`] with every unreadable row: a text that can not be read as a whole gives no table.
+    pub fn believable_rows(text: &str) -> Result<(Self, Vec<Defect>), TableError> {
         let mut formulas = Vec::new();
-        let mut defects = Vec::new();
+        let mut contradicted = Vec::new();
         for checked in read_rows(text, Strictness::Finished)?.into_iter().map(Row::check) {
             match checked.into_formula() {
                 Ok(formula) => formulas.push(formula),
-                Err(contradictions) => defects.extend(contradictions),
+                Err(contradictions) => contradicted.extend(contradictions),
             }
         }
-        TableError::unless_none(defects).map(|()| Self { formulas })
+        Ok((Self { formulas }, contradicted))
     }
 
     /// Returns the formula of an id.

@@ -1,76 +1,22 @@
 //! From a scenario to a planner: robots and rows looked up, chains mounted, paths laid.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Unit, Vector3};
 
-use super::document::read_text;
-use super::error::{ErrorKind, Place, ScenarioError};
+use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
 use super::model::{ArmSpec, LawKind, Mount, Scenario, Start, TaskKind};
 use super::path_spec::{PathKind, PathSpec, Plane, TimeLawKind};
 use super::real::Real;
 use super::robots::RobotSource;
-use crate::formula::{Defect, Formula, FormulaTable, TableError};
+use crate::formula::{Formula, FormulaTable};
 use crate::law::Pseudoinverse;
 use crate::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
 use crate::robot::{Chain, UrdfOptions};
 use crate::task::{self, Motion, Planar, PlanarCurve, TimeLaw, Turning};
 
-/// Returns `table` with the rows of a file after its own.
-///
-/// # Errors
-/// [`ScenarioError`] of kind [`ErrorKind::File`] where the file can not be read, of kind [`ErrorKind::Formula`], with
-/// its place, where a row is unreadable, contradicts what it declares, or has an id that is taken.
-pub fn with_formulas(table: &FormulaTable, file: &Path) -> Result<FormulaTable, ScenarioError> {
-    let text = read_text(file)?;
-    let more = FormulaTable::from_toml(&text).and_then(|more| table.extended_with(more));
-    more.map_err(|e| refused_rows(&e, file, &text))
-}
-
-/// Returns the refusal of a file of rows: its first defect, and how many there are.
-fn refused_rows(error: &TableError, file: &Path, text: &str) -> ScenarioError {
-    let mut all = row_refusals(error, file, text);
-    let count = all.len();
-    if count == 0 {
-        return ScenarioError::new(ErrorKind::Formula, format!("{}: {error}", file.display()));
-    }
-    let mut first = all.swap_remove(0);
-    if count > 1 {
-        first.message = format!("{} ({count} problems; `kinstep formula check` lists them)", first.message);
-    }
-    first
-}
-
-/// Returns the refusals of everything that is wrong with a file of rows, in the order of the file.
-pub(crate) fn row_refusals(error: &TableError, file: &Path, text: &str) -> Vec<ScenarioError> {
-    let refusal = |defect: &Defect| {
-        let row = defect.row.as_ref().map_or_else(String::new, |id| format!("formula \"{id}\": "));
-        let (line, column) = (defect.place.line.max(1), defect.place.column.max(1));
-        let place = Place::of_line(Some(file.display().to_string()), text, line, column);
-        ScenarioError::new(ErrorKind::Formula, format!("{row}{}", defect.kind)).or_placed(Some(place))
-    };
-    error.defects().iter().map(refusal).collect()
-}
-
 impl Scenario {
-    /// Returns the built-in table with the rows of the scenario's own formula files, which are looked for from `folder`.
-    ///
-    /// # Errors
-    /// As [`with_formulas`].
-    pub fn formula_table(&self, folder: Option<&Path>) -> Result<FormulaTable, ScenarioError> {
-        let mut table = FormulaTable::builtin().clone();
-        for (index, file) in self.formulas.iter().enumerate() {
-            let beside = folder.map_or_else(|| PathBuf::from(file), |folder| folder.join(file));
-            let at = KeyPath::dotted("formulas").index(index);
-            table = with_formulas(&table, &beside).map_err(|e| match e.kind {
-                ErrorKind::File => ScenarioError::at(e.kind, &at, e.message),
-                _ => e,
-            })?;
-        }
-        Ok(table)
-    }
-
     /// Returns a planner for the scenario with a row of `table`; robot files are looked for from `folder`, the place
     /// of the scenario's own file.
     ///
@@ -176,8 +122,8 @@ impl Scenario {
 }
 
 fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
-    let source = RobotSource::find(&spec.robot, folder)
-        .map_err(|e| ScenarioError::at(e.kind, &at.key("robot"), e.message))?;
+    let refuse = |e: ScenarioError| ScenarioError::at(e.kind, &at.key("robot"), e.message);
+    let source = RobotSource::find(&spec.robot, folder).map_err(refuse)?;
     let robot = source.read(&UrdfOptions::default()).map_err(|e| {
         let refusal = source.refusal(&e);
         let message = format!("{}: {}", at.key("robot"), refusal.message);

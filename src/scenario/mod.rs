@@ -8,6 +8,8 @@ mod check;
 mod document;
 mod error;
 mod expression;
+mod files;
+mod formulas;
 mod key_path;
 mod model;
 mod overrides;
@@ -17,10 +19,10 @@ mod robots;
 #[cfg(test)]
 mod tests;
 
-pub use build::with_formulas;
 pub use document::ScenarioText;
 pub use error::{ErrorKind, Place, ScenarioError};
 pub use expression::{ExpressionError, evaluate};
+pub use formulas::FormulaRows;
 pub use key_path::{KeyPath, Step};
 pub use model::{ArmSpec, LawKind, LawSpec, Mount, Scenario, Start, TaskKind};
 pub use path_spec::{PathKind, PathSpec, Plane, TimeLawKind, TurnSpec};
@@ -28,6 +30,7 @@ pub use real::Real;
 pub use robots::RobotSource;
 
 #[cfg(feature = "cli")]
-pub(crate) use build::row_refusals;
 #[cfg(feature = "cli")]
 pub(crate) use document::read_text;
+#[cfg(feature = "cli")]
+pub(crate) use formulas::row_refusals;

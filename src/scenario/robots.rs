@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::document::read_bounded;
 use super::error::{ErrorKind, Place, ScenarioError, suggestion};
+use super::files;
 use crate::robot::{MAX_BYTES, ReadError, Robot, UrdfOptions, embedded};
 
 /// Where a robot's URDF comes from.
@@ -21,20 +22,17 @@ impl RobotSource {
     ///
     /// # Errors
     /// [`ScenarioError`] of kind [`ErrorKind::Scenario`] for a name (no path, no extension) that is neither, with
-    /// the nearest names. A path to a file that is not there is found out by [`RobotSource::read`].
+    /// the nearest names, of kind [`ErrorKind::File`] for a path to a file that is in neither place.
     pub fn find(reference: &str, folder: Option<&Path>) -> Result<Self, ScenarioError> {
         let names = embedded::names();
         if names.contains(&reference) {
             return Ok(Self::Embedded(reference.to_owned()));
         }
-        let here = PathBuf::from(reference);
-        let beside = folder.map(|folder| folder.join(&here));
-        if let Some(found) = beside.iter().chain([&here]).find(|path| path.exists() && !reference.is_empty())
-        {
-            return Ok(Self::File(found.clone()));
+        if let Some(found) = files::find(reference, folder) {
+            return Ok(Self::File(found));
         }
-        if here.extension().is_some() || reference.contains(['/', '\\']) {
-            return Ok(Self::File(beside.unwrap_or(here)));
+        if Path::new(reference).extension().is_some() || reference.contains(['/', '\\']) {
+            return Err(files::missing(reference, folder));
         }
         let hint = suggestion(reference, names);
         let message = format!("\"{reference}\" is neither a built-in robot nor a file; {hint}");
