@@ -98,6 +98,21 @@ mod tests {
     }
 
     #[test]
+    fn planes_named_the_other_way_around_hold_the_mirror_image() {
+        let point = |plane| Planar::new(Tricuspid { radius: 0.3 }, plane, 0.0, 0.2, 5.0).point(0.3).position;
+        for (plane, mirrored) in [(Plane::Xy, Plane::Yx), (Plane::Yz, Plane::Zy), (Plane::Zx, Plane::Xz)] {
+            let (there, here) = (point(plane), point(mirrored));
+            let swapped = match plane {
+                Plane::Xy => Vector3::new(there.y, there.x, there.z),
+                Plane::Yz => Vector3::new(there.x, there.z, there.y),
+                _ => Vector3::new(there.z, there.y, there.x),
+            };
+            assert_eq!(here, swapped, "{mirrored:?}");
+            assert_ne!(here, there, "{mirrored:?}");
+        }
+    }
+
+    #[test]
     fn it_begins_at_the_pose_and_rests_after_the_end() {
         let motion = motion();
         assert!((motion.at(0.0).position - Vector3::new(1.0, 2.0, 3.0)).norm() < 1e-15);

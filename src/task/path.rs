@@ -60,6 +60,12 @@ pub enum Plane {
     Yz,
     /// Curve x along world z, curve y along world x.
     Zx,
+    /// The mirror image of [`Plane::Xy`]: curve x along world y, curve y along world x.
+    Yx,
+    /// The mirror image of [`Plane::Yz`]: curve x along world z, curve y along world y.
+    Zy,
+    /// The mirror image of [`Plane::Zx`]: curve x along world x, curve y along world z.
+    Xz,
 }
 
 impl Plane {
@@ -69,6 +75,9 @@ impl Plane {
             Self::Xy => (Vector3::x(), Vector3::y()),
             Self::Yz => (Vector3::y(), Vector3::z()),
             Self::Zx => (Vector3::z(), Vector3::x()),
+            Self::Yx => (Vector3::y(), Vector3::x()),
+            Self::Zy => (Vector3::z(), Vector3::y()),
+            Self::Xz => (Vector3::x(), Vector3::z()),
         }
     }
 }
