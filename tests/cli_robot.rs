@@ -143,3 +143,20 @@ fn limits_may_be_assumed_away_and_strictness_asked_for() {
     desk.run(&["robot", "check", "vendor.urdf"]).expect(0);
     desk.run(&["robot", "check", "vendor.urdf", "--strict"]).expect(3);
 }
+
+#[test]
+fn a_pose_that_is_no_number_is_refused_rather_than_written_as_null() {
+    let urdf = r#"<robot name="far"><link name="base"/><link name="a"/><link name="tip"/>
+<joint name="one" type="prismatic"><parent link="base"/><child link="a"/><axis xyz="1 0 0"/>
+<limit lower="-1e308" upper="1e308" effort="1" velocity="1"/></joint>
+<joint name="two" type="prismatic"><parent link="a"/><child link="tip"/><axis xyz="1 0 0"/>
+<limit lower="-1e308" upper="1e308" effort="1" velocity="1"/></joint></robot>"#;
+    let desk = Desk::new(&[("far.urdf", urdf)]);
+    for command in ["fk", "jacobian"] {
+        let arguments =
+            |q| ["robot", command, "far.urdf", "--base", "base", "--tip", "tip", "--q", q, "--json"];
+        let error = desk.run(&arguments("1e308,1e308")).expect(3).error();
+        assert!(error["message"].as_str().unwrap().contains("too large"), "{error}");
+        desk.run(&arguments("1e300,1")).expect(0);
+    }
+}

@@ -254,6 +254,11 @@ impl Kinematics {
         let mut columns = vec![Vector6::zeros(); chain.dof()];
         posed.geometric_jacobian(&mut columns);
         let rotation = pose.rotation.matrix();
+        let numbers = pose.translation.vector.iter().chain(rotation).chain(columns.iter().flatten());
+        if !numbers.copied().all(f64::is_finite) {
+            let message = format!("the pose of `{tip}` at these positions is too large to be computed");
+            return Err(Failure::new(Exit::Robot, message).in_file(&file.robot));
+        }
         Ok(Self {
             joints: chain.joints().iter().map(|joint| joint.name.clone()).collect(),
             position: pose.translation.vector.into(),
