@@ -116,6 +116,39 @@ fn a_gap_that_does_not_divide_the_duration_is_adjusted_and_said() {
 }
 
 #[test]
+fn smaller_errors_are_promised_only_where_a_smaller_gap_gives_them() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    let promises = |set: &[&str]| {
+        let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+        desk.run(&[&["plan", "s.toml"], &set[..]].concat()).out.contains("times smaller")
+    };
+    assert!(promises(&[]));
+    // At the round-off, and with a loop that does not settle within the run.
+    assert!(!promises(&["formula=split-ab6", "law.h=1", "start=rk8", "sigma=0.001"]));
+    assert!(!promises(&["law.h=0.0001"]));
+}
+
+#[test]
+fn numbers_of_any_size_are_written_short() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    for set in [
+        "law.h=1e300",
+        "law.h=1e-300",
+        "law.h=-1e300",
+        "law.gain=-1e300",
+        "sigma=1e-300",
+        "sigma=1e300",
+        "duration=1e300",
+        "duration=-1e300",
+        "law.threshold=-1e-300",
+        "arm.left.path.radius=-1e-300",
+    ] {
+        let run = desk.run(&["plan", "s.toml", "--set", set]);
+        assert!(!run.err.contains("000000000000") && !run.out.contains("000000000000"), "{set}: {}", run.err);
+    }
+}
+
+#[test]
 fn a_crossed_limit_is_exit_1_with_the_joint_the_time_and_the_limit() {
     let run = kinstep(&["plan", "--set", "duration=1", "--json"]).expect(1);
     let plan = run.json();

@@ -2,6 +2,7 @@
 
 mod complex_roots;
 mod double_double;
+mod figure;
 mod gram;
 mod modular;
 mod polynomial;
@@ -29,6 +30,7 @@ pub use singular::SingularValues;
 
 pub(crate) use complex_roots::{Complex, Real, polish, starting_points};
 pub(crate) use double_double::DoubleDouble;
+pub(crate) use figure::figure;
 pub(crate) use rational::{common_denominator, shortened};
 pub(crate) use routh::{half_plane_image, last_hurwitz_determinant};
 pub(crate) use wide::Wide;

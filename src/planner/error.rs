@@ -55,7 +55,8 @@ pub enum PlannerError {
     },
     /// The feedback step lies outside the range in which the loop is stable.
     #[error(
-        "h = {h} lies outside the feedback range {range} of formula `{formula}`: the closed loop would not be stable there; choose h inside the range, or allow unstable runs"
+        "h = {shown} lies outside the feedback range {range} of formula `{formula}`: the closed loop would not be stable there; choose h inside the range, or allow unstable runs",
+        shown = crate::math::figure(*h)
     )]
     StepSizeOutsideRange {
         /// The feedback step.

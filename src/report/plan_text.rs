@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::{PlanFormat, Table, short, sparkline};
+use crate::math::figure;
 use crate::planner::{ArmPlan, Plan};
 
 /// Width of the curves of the task errors [characters].
@@ -22,7 +23,7 @@ impl PlanFormat for PlanText {
             names.len(),
             names.join(", "),
             plan.steps,
-            plan.sigma
+            figure(plan.sigma)
         )?;
         writeln!(out, "formula {}, h = {}, start {}", plan.formula, short(plan.h), plan.start)?;
         match &plan.reason {

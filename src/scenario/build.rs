@@ -12,6 +12,7 @@ use super::real::Real;
 use super::robots::RobotSource;
 use crate::formula::{Formula, FormulaTable};
 use crate::law::Pseudoinverse;
+use crate::math::figure;
 use crate::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
 use crate::robot::{Chain, UrdfOptions};
 use crate::task::{self, Motion, Planar, PlanarCurve, TimeLaw, Turning};
@@ -147,7 +148,10 @@ fn check_initial(at: &KeyPath, chain: &Chain, q0: &[f64]) -> Result<(), Scenario
     if let Some(outside) = chain.limit_violations(q0).next() {
         let problem = format!(
             "joint `{}` would start at {}, outside its limits [{}, {}]",
-            outside.joint, outside.value, outside.lower, outside.upper
+            outside.joint,
+            figure(outside.value),
+            figure(outside.lower),
+            figure(outside.upper)
         );
         return Err(ScenarioError::at(ErrorKind::Scenario, &at.index(outside.index), problem));
     }
@@ -181,6 +185,9 @@ impl Plane {
             Self::Xy => task::Plane::Xy,
             Self::Yz => task::Plane::Yz,
             Self::Zx => task::Plane::Zx,
+            Self::Yx => task::Plane::Yx,
+            Self::Zy => task::Plane::Zy,
+            Self::Xz => task::Plane::Xz,
         }
     }
 }

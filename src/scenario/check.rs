@@ -6,6 +6,9 @@ use super::model::{ArmSpec, Scenario, TaskKind};
 use super::path_spec::{PathKind, PathSpec, TurnSpec};
 use super::real::Real;
 
+/// Largest length [m], angle [rad] or other number of an arm that is believed.
+const MAX_SIZE: f64 = 1e6;
+
 /// Most memory that the trajectories of one plan may take [bytes].
 const MAX_BYTES: f64 = 4e9;
 
@@ -43,12 +46,15 @@ impl Scenario {
         let (sigma, duration) = (self.sigma.value(), self.duration.value());
         let at = KeyPath::dotted("sigma");
         require(sigma.is_finite() && sigma > 0.0, &at, || {
+            let sigma = &self.sigma;
             format!("{sigma} s is not a sampling gap; give a positive number of seconds such as 0.01")
         })?;
         require(duration.is_finite() && duration > 0.0, &KeyPath::dotted("duration"), || {
+            let duration = &self.duration;
             format!("{duration} s is not the length of a motion; give a positive number of seconds")
         })?;
         require(sigma <= duration, &at, || {
+            let (sigma, duration) = (&self.sigma, &self.duration);
             format!("{sigma} s is longer than the motion of {duration} s; it must be at most the duration")
         })
     }
@@ -72,6 +78,7 @@ impl Scenario {
             })?;
         }
         if let Some(threshold) = &self.law.threshold {
+            believable(&law.key("threshold"), threshold)?;
             require(threshold.value() > 0.0, &law.key("threshold"), || {
                 format!("{threshold} is not a threshold for singular values; it is positive")
             })?;
@@ -108,18 +115,22 @@ fn check_name(at: &KeyPath, name: &str) -> Result<(), ScenarioError> {
 fn check_arm(at: &KeyPath, arm: &ArmSpec) -> Result<(), ScenarioError> {
     require(!arm.q0.is_empty(), &at.key("q0"), || "give one position per joint of the chain".to_owned())?;
     for (value, joint) in arm.q0.iter().zip(0..) {
-        finite(&at.key("q0").index(joint), value)?;
+        believable(&at.key("q0").index(joint), value)?;
     }
     for (key, triple) in [("xyz", &arm.mount.xyz), ("rpy", &arm.mount.rpy)] {
         for (value, axis) in triple.iter().zip(0..) {
-            finite(&at.key("mount").key(key).index(axis), value)?;
+            believable(&at.key("mount").key(key).index(axis), value)?;
         }
     }
     check_path(&at.key("path"), &arm.path, arm.task)
 }
 
-fn finite(at: &KeyPath, value: &Real) -> Result<(), ScenarioError> {
-    require(value.value().is_finite(), at, || format!("{value} is not a finite number"))
+/// The one rule for the size of lengths and angles: beyond it nothing of the arithmetic would be left.
+fn believable(at: &KeyPath, number: &Real) -> Result<(), ScenarioError> {
+    require(number.value().is_finite(), at, || format!("{number} is not a finite number"))?;
+    require(number.value().abs() <= MAX_SIZE, at, || {
+        format!("{number} is beyond any arm; lengths [m] and angles [rad] are at most {MAX_SIZE} in size")
+    })
 }
 
 fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), ScenarioError> {
@@ -131,6 +142,9 @@ fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), Scena
     }
     for needed in path.kind.required() {
         require(path.given().contains(needed), &at.key(needed), || format!("a {kind} needs this"))?;
+    }
+    for (key, index, number) in path.numbers() {
+        believable(&index.map_or_else(|| at.key(key), |index| at.key(key).index(index)), number)?;
     }
     if let Some(radius) = &path.radius {
         require(radius.value() > 0.0, &at.key("radius"), || {
@@ -161,6 +175,7 @@ fn check_points(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), Sce
 
 fn check_turn(at: &KeyPath, turn: &TurnSpec, task: TaskKind) -> Result<(), ScenarioError> {
     require(task == TaskKind::Pose, at, || "only a task \"pose\" has an orientation to turn".to_owned())?;
+    believable(&at.key("angle"), &turn.angle)?;
     let length = turn.axis.iter().map(|x| x.value() * x.value()).sum::<f64>().sqrt();
     require(length > 0.0 && length.is_finite(), &at.key("axis"), || {
         format!("an axis of length {length} points nowhere; give a direction such as [0, 0, 1]")

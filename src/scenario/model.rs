@@ -8,7 +8,7 @@ use super::real::{Real, exactly};
 /// A plan to be made: how time is discretised, what moves, along what, and how redundancy is resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a scenario")]
 pub struct Scenario {
     /// Sampling gap in s. Where it does not divide `duration` it is adjusted so that it does, with a warning.
     pub sigma: Real,
@@ -35,7 +35,7 @@ pub struct Scenario {
 /// How the first states of a run are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case", expecting = "one of paper, ramp, rk4, rk8")]
 pub enum Start {
     /// Euler steps with the same h, as in the paper: leaves a residual of (sigma^2/2) phi''.
     Paper,
@@ -51,7 +51,7 @@ pub enum Start {
 /// without either, h is the formula's optimum.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table such as { h = 0.4 }")]
 pub struct LawSpec {
     /// The law.
     #[serde(default)]
@@ -71,7 +71,7 @@ pub struct LawSpec {
 /// The laws that a scenario can name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case", expecting = "one of pseudoinverse")]
 pub enum LawKind {
     /// The joint velocity of least norm, by the pseudoinverse of the task Jacobian.
     #[default]
@@ -81,7 +81,7 @@ pub enum LawKind {
 /// One arm: a chain of a robot, where it stands, how it begins and what its tip follows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table [[arm]] with name, robot, base, tip, task, q0 and path")]
 pub struct ArmSpec {
     /// Name of the arm: letters, digits, `-` and `_`.
     pub name: String,
@@ -105,7 +105,7 @@ pub struct ArmSpec {
 /// What of the tip follows the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case", expecting = "one of position-xy, position, pose")]
 pub enum TaskKind {
     /// Position in the plane, x and y.
     PositionXy,
@@ -118,7 +118,7 @@ pub enum TaskKind {
 /// A pose in the world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table such as { xyz = [0, 0, 0], rpy = [0, 0, 0] }")]
 pub struct Mount {
     /// Position in m.
     #[serde(default = "zeros", deserialize_with = "exactly")]

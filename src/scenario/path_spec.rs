@@ -8,7 +8,7 @@ use super::real::{Real, exactly, some_exactly};
 /// tip's position at q0 unless `center` is given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table such as { kind = \"circle\", radius = 0.1 }")]
 pub struct PathSpec {
     /// Kind of curve.
     pub kind: PathKind,
@@ -59,7 +59,7 @@ pub struct PathSpec {
 /// Kinds of curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case", expecting = "one of circle, tricuspid, astroid, line, lissajous, rose")]
 pub enum PathKind {
     /// radius (cos a, sin a).
     Circle,
@@ -78,7 +78,7 @@ pub enum PathKind {
 /// Planes of the world's axes; the first letter is the curve's own x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case", expecting = "one of xy, yz, zx, yx, zy, xz")]
 pub enum Plane {
     /// World x and y.
     Xy,
@@ -86,12 +86,18 @@ pub enum Plane {
     Yz,
     /// World z and x.
     Zx,
+    /// World y and x: the mirror image of xy, run the other way around.
+    Yx,
+    /// World z and y: the mirror image of yz, run the other way around.
+    Zy,
+    /// World x and z: the mirror image of zx, run the other way around.
+    Xz,
 }
 
 /// How the angle of a path runs from its beginning to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case", expecting = "one of sin2, sin2sin2, linear, quintic")]
 pub enum TimeLawKind {
     /// sin^2(pi t / 2T): at rest at both ends.
     Sin2,
@@ -106,7 +112,7 @@ pub enum TimeLawKind {
 /// A turn about a fixed axis in the course of the path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table such as { axis = [0, 0, 1], angle = 0.5 }")]
 pub struct TurnSpec {
     /// Axis in world coordinates; its length does not matter, but it must have one.
     #[serde(deserialize_with = "exactly")]
@@ -174,6 +180,31 @@ impl PathSpec {
             time_law: None,
             turn: None,
         }
+    }
+
+    /// Returns every length, angle and frequency that is given, by its key and, in a list, its place there.
+    pub fn numbers(&self) -> impl Iterator<Item = (&'static str, Option<usize>, &Real)> {
+        let single = [
+            ("radius", &self.radius),
+            ("petals", &self.petals),
+            ("phase", &self.phase),
+            ("rotation", &self.rotation),
+            ("from", &self.from),
+            ("sweep", &self.sweep),
+        ];
+        let lists = [
+            ("to", self.to.as_deref()),
+            ("displacement", self.displacement.as_deref()),
+            ("center", self.center.as_deref()),
+            ("amplitudes", self.amplitudes.as_ref().map(<[Real; 2]>::as_slice)),
+            ("frequencies", self.frequencies.as_ref().map(<[Real; 2]>::as_slice)),
+        ];
+        let single = single.into_iter().filter_map(|(key, number)| Some((key, None, number.as_ref()?)));
+        let entries = lists.into_iter().flat_map(|(key, list)| {
+            let numbers = list.unwrap_or_default().iter().enumerate();
+            numbers.map(move |(index, number)| (key, Some(index), number))
+        });
+        single.chain(entries)
     }
 
     /// Returns the names of the parameters that are given.

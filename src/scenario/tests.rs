@@ -204,6 +204,58 @@ fn what_can_not_be_set_says_why() {
 }
 
 #[test]
+fn absurd_lengths_and_angles_are_refused_by_their_keys() {
+    let turn = "arm.right.path.turn={axis=[0,0,1], angle=1e7}";
+    let lissajous = |amplitudes: &str, frequencies: &str| {
+        format!("arm.left.path={{kind='lissajous', amplitudes={amplitudes}, frequencies={frequencies}}}")
+    };
+    for (assignment, key) in [
+        ("arm.left.path.radius=1e300", "arm.left.path.radius"),
+        ("arm.left.path.rotation=-1e300", "arm.left.path.rotation"),
+        ("arm.left.path.sweep=\"1e5*1e5\"", "arm.left.path.sweep"),
+        ("arm.left.path.center=[0,1e7]", "arm.left.path.center[1]"),
+        ("arm.left.mount.xyz=[0,0,1e300]", "arm.left.mount.xyz[2]"),
+        ("arm.left.mount.rpy=[1e7,0,0]", "arm.left.mount.rpy[0]"),
+        ("arm.left.q0=[0,0,0,-1e300]", "arm.left.q0[3]"),
+        ("arm.right.path.displacement=[1e300,0]", "arm.right.path.displacement[0]"),
+        ("law.threshold=1e300", "law.threshold"),
+        (&lissajous("[1,1e9]", "[1,2]"), "arm.left.path.amplitudes[1]"),
+        (&lissajous("[1,1]", "[1e9,2]"), "arm.left.path.frequencies[0]"),
+    ] {
+        let error = with(&[assignment]).unwrap_err();
+        assert!(error.message.starts_with(&format!("{key}: ")), "{assignment}: {error}");
+        assert!(error.message.contains("at most 1000000"), "{assignment}: {error}");
+        assert!(error.message.len() < 250, "{assignment}: {error}");
+    }
+    let error = with(&["arm.right.task=pose", "arm.right.path.displacement=[0,0,0]", turn]).unwrap_err();
+    assert!(error.message.starts_with("arm.right.path.turn.angle: 10000000 is beyond"), "{error}");
+    assert!(with(&["arm.left.path.radius=1e6"]).is_ok());
+}
+
+#[test]
+fn a_value_of_the_wrong_type_is_told_what_to_write_in_words() {
+    for (assignment, said) in [
+        ("law=3", "a table such as { h = 0.4 }"),
+        ("arm.left.path=3", "a table such as { kind = \"circle\", radius = 0.1 }"),
+        ("arm.left.mount=[0,0,0]", "a table such as { xyz = "),
+        ("arm.left.path.plane=[0,0,1]", "one of xy, yz, zx, yx, zy, xz"),
+        ("arm.left.path.plane=3", "one of xy, yz, zx, yx, zy, xz"),
+        ("arm.left.path.kind=3", "one of circle, tricuspid, astroid, line, lissajous, rose"),
+        ("arm.left.path.time_law=[1]", "one of sin2, sin2sin2, linear, quintic"),
+        ("arm.left.task=1", "one of position-xy, position, pose"),
+        ("start=1", "one of paper, ramp, rk4, rk8"),
+        ("law.kind=1", "one of pseudoinverse"),
+    ] {
+        let error = with(&[assignment]).unwrap_err();
+        assert!(error.message.contains(said), "{assignment}: {error}");
+        assert!(
+            !error.message.contains("struct") && !error.message.contains("enum"),
+            "{assignment}: {error}"
+        );
+    }
+}
+
+#[test]
 fn positions_are_those_of_the_file_whatever_is_set() {
     let mut text = ScenarioText::parse(&SMALL.replace("0.3, 0.4]", "true, 0.4]")).unwrap();
     text.set("allow_unstable=true").unwrap();
