@@ -133,6 +133,14 @@ impl ScenarioText {
         Place::of_byte(self.file.as_deref().map(display), self.original.raw(), byte)
     }
 
+    /// Returns the words that may stand at `path`, found out by what is said to a word that is none.
+    fn words_at(&self, path: &KeyPath) -> Option<String> {
+        let (_, text) = overrides::apply(&self.edited, &format!("{path}=\"\"")).ok()?;
+        let error = toml::from_str::<Scenario>(&text).err()?;
+        let known: Vec<&str> = error.message().split('`').skip(3).step_by(2).collect();
+        Some(known.join(", ")).filter(|known| !known.is_empty())
+    }
+
     fn refusal(&self, error: &toml::de::Error) -> ScenarioError {
         let span = error.span().unwrap_or(0..0);
         let entries = entries(&self.edited);
@@ -153,7 +161,12 @@ impl ScenarioText {
             Some((value, known)) if said.starts_with("unknown variant") => {
                 (path, format!("\"{value}\" is {}", not_one_of(value, known)))
             }
-            _ => (path, said.to_owned()),
+            _ if said.starts_with("wanted ") => {
+                let problem =
+                    self.words_at(&path).map_or(said.to_owned(), |words| format!("expected one of {words}"));
+                (path, problem)
+            }
+            _ => (path, in_terms_of_toml(said)),
         };
         let mut refusal = ScenarioError::at(ErrorKind::Scenario, &path, problem);
         if self.assignments.is_empty() {
@@ -161,6 +174,13 @@ impl ScenarioText {
         }
         self.placed(refusal)
     }
+}
+
+/// Returns what the reader said, in the words of people who write TOML.
+fn in_terms_of_toml(said: &str) -> String {
+    said.replace("invalid type: sequence", "invalid type: list")
+        .replace("invalid type: map", "invalid type: table")
+        .replace("expected a sequence", "expected a list")
 }
 
 /// One key of a scenario and where it stands.

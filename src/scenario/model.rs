@@ -35,7 +35,7 @@ pub struct Scenario {
 /// How the first states of a run are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case", expecting = "one of paper, ramp, rk4, rk8")]
+#[serde(rename_all = "kebab-case")]
 pub enum Start {
     /// Euler steps with the same h, as in the paper: leaves a residual of (sigma^2/2) phi''.
     Paper,
@@ -71,7 +71,7 @@ pub struct LawSpec {
 /// The laws that a scenario can name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case", expecting = "one of pseudoinverse")]
+#[serde(rename_all = "kebab-case")]
 pub enum LawKind {
     /// The joint velocity of least norm, by the pseudoinverse of the task Jacobian.
     #[default]
@@ -105,7 +105,7 @@ pub struct ArmSpec {
 /// What of the tip follows the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case", expecting = "one of position-xy, position, pose")]
+#[serde(rename_all = "kebab-case")]
 pub enum TaskKind {
     /// Position in the plane, x and y.
     PositionXy,

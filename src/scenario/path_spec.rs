@@ -59,7 +59,7 @@ pub struct PathSpec {
 /// Kinds of curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case", expecting = "one of circle, tricuspid, astroid, line, lissajous, rose")]
+#[serde(rename_all = "kebab-case")]
 pub enum PathKind {
     /// radius (cos a, sin a).
     Circle,
@@ -78,7 +78,7 @@ pub enum PathKind {
 /// Planes of the world's axes; the first letter is the curve's own x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case", expecting = "one of xy, yz, zx, yx, zy, xz")]
+#[serde(rename_all = "kebab-case")]
 pub enum Plane {
     /// World x and y.
     Xy,
@@ -97,7 +97,7 @@ pub enum Plane {
 /// How the angle of a path runs from its beginning to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case", expecting = "one of sin2, sin2sin2, linear, quintic")]
+#[serde(rename_all = "kebab-case")]
 pub enum TimeLawKind {
     /// sin^2(pi t / 2T): at rest at both ends.
     Sin2,

@@ -237,7 +237,8 @@ fn a_value_of_the_wrong_type_is_told_what_to_write_in_words() {
     for (assignment, said) in [
         ("law=3", "a table such as { h = 0.4 }"),
         ("arm.left.path=3", "a table such as { kind = \"circle\", radius = 0.1 }"),
-        ("arm.left.mount=[0,0,0]", "a table such as { xyz = "),
+        ("arm.left.mount=3", "a table such as { xyz = "),
+        ("arm.left.mount=[0,0,0]", "expected a list"),
         ("arm.left.path.plane=[0,0,1]", "one of xy, yz, zx, yx, zy, xz"),
         ("arm.left.path.plane=3", "one of xy, yz, zx, yx, zy, xz"),
         ("arm.left.path.kind=3", "one of circle, tricuspid, astroid, line, lissajous, rose"),
