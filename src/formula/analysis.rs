@@ -6,10 +6,12 @@ use num_traits::Zero;
 
 use crate::math::{Polynomial, Rational, RootCondition, root_condition, root_moduli};
 
+use super::closed_form::{ClosedForm, closed_form};
 use super::feedback_range::{ClosedLoop, FeedbackRange};
 use super::noise::{NoiseGain, noise_gain};
 use super::order::{Order, order_defect, order_of};
 use super::radius::{Optimum, optimum, spectral_radius};
+use super::ssp::ssp_coefficient;
 
 /// The weights of a row, normalised so that alpha_0 = 1, newest sample first, three lists of one length.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -156,6 +158,22 @@ impl Analysis {
     /// Returns the best feedback step inside the range, `None` where there is none.
     pub fn optimum(&self) -> Option<Optimum> {
         *self.optimum.get_or_init(|| optimum(self.closed_loop.as_ref()?, self.feedback_range()?))
+    }
+
+    /// Returns h_opt and r_opt^2 as algebraic numbers, found by elimination; `None` without an optimum or where the
+    /// elimination is out of reach (long rows). Not kept: ask once.
+    pub fn closed_form(&self) -> Option<ClosedForm> {
+        closed_form(self.closed_loop.as_ref()?, self.feedback_range()?, self.optimum()?)
+    }
+
+    /// Returns the coefficient of strong stability preservation of (alpha, beta), `None` where there is none.
+    pub fn ssp_coefficient(&self) -> Option<Rational> {
+        ssp_coefficient(&self.weights.alpha, &self.weights.beta)
+    }
+
+    /// The loop whose roots the pictures show.
+    pub(crate) fn closed_loop(&self) -> Option<&ClosedLoop> {
+        self.closed_loop.as_ref()
     }
 
     /// Returns the spectral radius of the closed loop at h; NaN where there is no loop or h is not finite.

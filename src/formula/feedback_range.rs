@@ -8,7 +8,7 @@ use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 
 use crate::math::{
-    Polynomial, Rational, RealRoot, common_denominator, half_plane_image, is_schur, last_hurwitz_determinant,
+    Polynomial, Rational, RealRoot, common_denominator, half_plane_image, interpolate, is_schur, last_hurwitz_determinant,
     positive_roots, rational_from_f64, rational_roots, rational_to_f64,
 };
 
@@ -249,45 +249,12 @@ fn pair_polynomial(closed_loop: &ClosedLoop, n: usize) -> Option<Polynomial> {
         })
         .take(n.max(1))
         .collect();
-    (samples.len() == n.max(1)).then(|| interpolate(&samples))
-}
-
-/// The primitive multiple of the polynomial of least degree through the samples (Newton's divided differences).
-///
-/// Differences of order k are kept multiplied by a common multiple of all gaps so far, so that everything stays an integer.
-fn interpolate(samples: &[(i64, BigInt)]) -> Polynomial {
-    let mut differences: Vec<BigInt> = samples.iter().map(|(_, value)| value.clone()).collect();
-    let mut multiples = vec![BigInt::one()];
-    for order in 1..samples.len() {
-        let gap = |k: usize| BigInt::from(samples[k].0 - samples[k - order].0);
-        let multiple = (order..samples.len()).fold(BigInt::one(), |lcm, k| lcm.lcm(&gap(k)));
-        for k in (order..samples.len()).rev() {
-            differences[k] = (&differences[k] - &differences[k - 1]) * (&multiple / gap(k));
-        }
-        multiples.push(multiple);
-    }
-    // Horner in the nodes; the differences of lower orders still lack the multiples of the higher ones.
-    let (mut polynomial, mut scale) = (Polynomial::default(), BigInt::one());
-    for ((difference, multiple), (node, _)) in differences.iter().zip(&multiples).zip(samples).rev() {
-        let factor = Polynomial::from_ascending([-node, 1]);
-        polynomial = &(&polynomial * &factor) + &Polynomial::constant(difference * &scale);
-        scale *= multiple;
-    }
-    polynomial.primitive_part()
+    (samples.len() == n.max(1)).then(|| interpolate(&samples).0.primitive_part())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_polynomial_is_found_again_from_its_values() {
-        let p = Polynomial::from_descending(&[32, 108, -81, 0, 7]);
-        let nodes = [1, -1, 2, 5, -3];
-        let value = |node: i64| p.value_at(&Rational::from_integer(node.into())).to_integer();
-        let samples: Vec<(i64, BigInt)> = nodes.into_iter().map(|node| (node, value(node))).collect();
-        assert_eq!(interpolate(&samples), p);
-    }
 
     #[test]
     fn a_loop_of_no_stable_h_has_an_empty_range() {

@@ -4,8 +4,13 @@
 //! becomes a [`Formula`]. Order, root condition and feedback range are decided exactly.
 
 mod analysis;
+mod bibliography;
+mod card_curves;
+mod card_snippets;
 mod check;
 pub mod derive;
+mod closed_form;
+mod derivative_rule;
 mod draft;
 mod error;
 mod feedback_range;
@@ -15,12 +20,19 @@ mod noise;
 mod order;
 mod radius;
 mod read;
+mod recommend;
 mod row;
 pub mod search;
+mod ssp;
 mod table;
 
 pub use analysis::Analysis;
+pub use bibliography::bibtex;
+pub use card_curves::{FrequencyResponse, RootLocus, StabilityRegion};
+pub use card_snippets::Snippet;
 pub use check::CheckedRow;
+pub use closed_form::{Cause, ClosedForm};
+pub use derivative_rule::DerivativeRule;
 pub use error::{Contradiction, Defect, DefectKind, NotRunnable, Place, TableError, UnknownFormula};
 pub use feedback_range::FeedbackRange;
 pub use formula::Formula;
@@ -28,7 +40,10 @@ pub use noise::NoiseGain;
 pub use order::order_defect;
 pub use radius::Optimum;
 pub use read::{Strictness, read_rows};
+pub use recommend::{Duty, Merit, Recommendation, merit};
 pub use row::{Coefficients, Declared, MAX_STEPS, Row};
 pub use table::FormulaTable;
 
 pub use crate::math::RootCondition;
+
+pub(crate) use card_snippets::recursion;

@@ -82,7 +82,7 @@ pub(crate) fn optimum(closed_loop: &ClosedLoop, range: &FeedbackRange) -> Option
 }
 
 /// The h, if any, at which every root is zero: all coefficients but the leading one vanish together.
-fn deadbeat(closed_loop: &ClosedLoop) -> Option<Rational> {
+pub(super) fn deadbeat(closed_loop: &ClosedLoop) -> Option<Rational> {
     let n = closed_loop.degree();
     let (rho, gamma) = (closed_loop.rho(), closed_loop.gamma());
     let (constant, slope) =

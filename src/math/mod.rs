@@ -1,9 +1,13 @@
 //! Exact polynomials and their root tests, and the numbers they are made of; rotations and small solves of static size.
 
+mod algebraic;
+mod bivariate;
 mod complex_roots;
 mod double_double;
 mod figure;
 mod gram;
+mod interpolation;
+mod lattice;
 mod modular;
 mod polynomial;
 mod rational;
@@ -15,6 +19,7 @@ mod routh;
 mod singular;
 mod wide;
 
+pub use algebraic::{AlgebraicNumber, Surd};
 pub use complex_roots::{complex_roots, root_moduli};
 pub use gram::GramCholesky;
 pub use polynomial::Polynomial;
@@ -29,8 +34,11 @@ pub use routh::{is_schur, is_schur_within};
 pub use singular::SingularValues;
 
 pub(crate) use complex_roots::{Complex, Real, polish, starting_points};
+pub(crate) use algebraic::latex_fraction;
+pub(crate) use bivariate::{Bivariate, resultant, resultant_cost};
 pub(crate) use double_double::DoubleDouble;
 pub(crate) use figure::figure;
+pub(crate) use interpolation::interpolate;
 pub(crate) use rational::{common_denominator, shortened};
 pub(crate) use routh::{half_plane_image, last_hurwitz_determinant};
 pub(crate) use wide::Wide;

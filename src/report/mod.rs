@@ -1,6 +1,8 @@
 //! Results written down: one trait, one file per format, and files that are whole or not there.
 
+pub mod figure;
 mod file;
+mod formula_page;
 mod plan;
 mod plan_csv;
 #[cfg(feature = "cli")]
@@ -9,6 +11,7 @@ mod plan_text;
 mod table;
 
 pub use file::{WriteError, write_whole};
+pub use formula_page::{FormulaPage, pareto_front};
 pub use plan::PlanFormat;
 pub use plan_csv::PlanCsv;
 #[cfg(feature = "cli")]

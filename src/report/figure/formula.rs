@@ -1,0 +1,282 @@
+//! The pictures of a formula.
+
+use std::f64::consts::{PI, TAU};
+
+use super::axis::{Axis, Scale};
+use super::figure::{Figure, Mark, Shape};
+use crate::formula::{Analysis, Formula, FrequencyResponse, StabilityRegion};
+use crate::math::rational_to_f64;
+
+/// Returns every picture that a row has: its roots, their locus, the spectral radius, the region of stability and, where the
+/// loop has a best feedback step, the frequency response. `id` names the files.
+pub fn portrait(id: &str, analysis: &Analysis) -> Vec<Figure> {
+    let rows = [(id, analysis)];
+    let mut figures = vec![roots_figure(id, analysis)];
+    if analysis.feedback_range().is_some() {
+        figures.extend([locus_figure(id, analysis), radius_figure(&rows)]);
+    }
+    figures.push(region_figure(id, analysis));
+    figures.extend(frequency_figure(&rows));
+    figures
+}
+
+fn plane(figure: &str, id: &str, title: String, half: f64, marks: Vec<Mark>) -> Figure {
+    let axis = |label: &str, column: &str| Axis::new(label, column, Scale::Linear, (-half, half));
+    Figure {
+        name: format!("{id}-{figure}"),
+        title,
+        x: axis("Re z", "re"),
+        y: axis("Im z", "im"),
+        is_isometric: true,
+        parameter: None,
+        marks,
+    }
+}
+
+fn unit_circle() -> Mark {
+    let point = |k: usize| (TAU * k as f64 / 180.0).sin_cos();
+    Mark::Guide { points: (0..=180).map(|k| (point(k).1, point(k).0)).collect() }
+}
+
+/// Returns the roots of rho(z) in the unit disk.
+pub fn roots_figure(id: &str, analysis: &Analysis) -> Figure {
+    let roots: Vec<(f64, f64)> = analysis.roots().iter().map(|z| (z.re, z.im)).collect();
+    let reach = roots.iter().map(|z| z.0.hypot(z.1)).fold(1.0, f64::max);
+    let near = |z: &&(f64, f64)| (z.0.hypot(z.1) - 1.0).abs() < 1e-9;
+    let outside = |z: &&(f64, f64)| z.0.hypot(z.1) >= 1.0 + 1e-9;
+    let inside = |z: &&(f64, f64)| z.0.hypot(z.1) <= 1.0 - 1e-9;
+    let part = |name: &str, points: Vec<(f64, f64)>, shape, style| Mark::Points {
+        name: name.to_owned(),
+        points,
+        shape,
+        style,
+    };
+    let groups = [
+        part("inside", roots.iter().filter(inside).copied().collect(), Shape::Disk, 0),
+        part("on the circle", roots.iter().filter(near).copied().collect(), Shape::Circle, 2),
+        part("outside", roots.iter().filter(outside).copied().collect(), Shape::Cross, 1),
+    ];
+    let shown = |mark: &Mark| matches!(mark, Mark::Points { points, .. } if !points.is_empty());
+    let marks = [unit_circle()].into_iter().chain(groups.into_iter().filter(shown)).collect();
+    plane("roots", id, format!("{id}: roots of \u{3c1}(z)"), 1.15 * reach, marks)
+}
+
+/// Returns the paths of the closed loop's roots as h grows from 0 to beyond the feedback range.
+pub fn locus_figure(id: &str, analysis: &Analysis) -> Figure {
+    let end = analysis.pictured_h();
+    let locus = analysis.root_locus(end, 900);
+    let mut marks = vec![unit_circle()];
+    for branch in &locus.branches {
+        marks.push(Mark::Line {
+            name: "path of a root".to_owned(),
+            points: branch.iter().map(|z| (z.re, z.im)).collect(),
+            parameter: locus.h.clone(),
+            style: 0,
+        });
+    }
+    let at = |h: f64| -> Vec<(f64, f64)> {
+        let nearest = (0..locus.h.len()).min_by(|&i, &j| (locus.h[i] - h).abs().total_cmp(&(locus.h[j] - h).abs()));
+        nearest.map_or_else(Vec::new, |i| locus.branches.iter().map(|b| (b[i].re, b[i].im)).collect())
+    };
+    let points = |name: String, h: f64, shape, style| Mark::Points { name, points: at(h), shape, style };
+    marks.push(points("h = 0".to_owned(), 0.0, Shape::Circle, 6));
+    if let Some(optimum) = analysis.optimum() {
+        marks.push(points(format!("h_opt = {:.4}", optimum.h), optimum.h, Shape::Disk, 2));
+    }
+    if let Some(range) = analysis.feedback_range().filter(|range| !range.is_empty() && !range.is_unbounded()) {
+        marks.push(points(format!("h_max = {:.4}", range.value()), range.value(), Shape::Cross, 1));
+    }
+    let reach = locus.branches.iter().flatten().map(|z| z.norm()).fold(1.0, f64::max).min(1.6);
+    let title = format!("{id}: roots of the closed loop, h from 0 to {end:.3}");
+    Figure { parameter: Some("h".to_owned()), ..plane("locus", id, title, 1.12 * reach, marks) }
+}
+
+/// Returns the spectral radius of the closed loop over the feedback step, a line for each row.
+pub fn radius_figure(rows: &[(&str, &Analysis)]) -> Figure {
+    let end = rows.iter().map(|(_, analysis)| analysis.pictured_h()).fold(0.0, f64::max);
+    let mut marks = vec![Mark::Guide { points: vec![(0.0, 1.0), (end, 1.0)] }];
+    let mut least = 1.0_f64;
+    for (style, (id, analysis)) in rows.iter().enumerate() {
+        let points = analysis.radius_curve(end, 1000);
+        least = points.iter().map(|p| p.1).fold(least, f64::min);
+        marks.push(Mark::Line { name: (*id).to_owned(), points, parameter: Vec::new(), style });
+    }
+    for (style, (_, analysis)) in rows.iter().enumerate() {
+        let Some(optimum) = analysis.optimum() else { continue };
+        least = least.min(optimum.radius);
+        let at = (optimum.h, optimum.radius);
+        marks.push(Mark::Points { name: "optimum".to_owned(), points: vec![at], shape: Shape::Disk, style });
+        if rows.len() == 1 {
+            let text = format!("h = {:.4}, r = {:.4}", optimum.h, optimum.radius);
+            marks.push(Mark::Label { text, at });
+        }
+    }
+    for (style, (_, analysis)) in rows.iter().enumerate() {
+        let bounded = |range: &&crate::formula::FeedbackRange| !range.is_empty() && !range.is_unbounded();
+        if let Some(range) = analysis.feedback_range().filter(bounded) {
+            let points = vec![(range.value(), 1.0)];
+            marks.push(Mark::Points { name: "end of the range".to_owned(), points, shape: Shape::Cross, style });
+        }
+    }
+    let names = rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
+    let margin = 0.08 * (1.15 - least);
+    Figure {
+        name: format!("{}-radius", names.join("-")),
+        title: format!("{}: spectral radius of the closed loop", names.join(", ")),
+        x: Axis::new("feedback step h", "h", Scale::Linear, (0.0, end)),
+        y: Axis::new("spectral radius r(h), decay per step", "r", Scale::Linear, ((least - margin).max(-0.03), 1.15)),
+        is_isometric: false,
+        parameter: None,
+        marks,
+    }
+}
+
+/// Returns where x' = lambda x is integrated stably, in the plane of sigma lambda.
+pub fn region_figure(id: &str, analysis: &Analysis) -> Figure {
+    let StabilityRegion { real, imaginary, stable, boundary } = analysis.stability_region(260);
+    let count = boundary.len().saturating_sub(1).max(1) as f64;
+    let marks = vec![
+        Mark::Region { name: "stable".to_owned(), strips: strips(real, imaginary, &stable), style: 5 },
+        Mark::Guide { points: vec![(0.0, imaginary.0), (0.0, imaginary.1)] },
+        Mark::Guide { points: vec![(real.0, 0.0), (real.1, 0.0)] },
+        Mark::Line {
+            name: "boundary locus".to_owned(),
+            parameter: (0..boundary.len()).map(|k| TAU * k as f64 / count).collect(),
+            points: boundary.iter().map(|mu| (mu.re, mu.im)).collect(),
+            style: 0,
+        },
+    ];
+    let split = if analysis.is_split() { " (feedforward pair)" } else { "" };
+    Figure {
+        name: format!("{id}-region"),
+        title: format!("{id}: stability on x' = \u{3bb}x{split}"),
+        x: Axis::new("Re \u{3c3}\u{3bb}", "re", Scale::Linear, real),
+        y: Axis::new("Im \u{3c3}\u{3bb}", "im", Scale::Linear, imaginary),
+        is_isometric: true,
+        parameter: Some("theta".to_owned()),
+        marks,
+    }
+}
+
+/// The stable cells as horizontal strips.
+fn strips(real: (f64, f64), imaginary: (f64, f64), stable: &[Vec<bool>]) -> Vec<[f64; 4]> {
+    let part = |(low, high): (f64, f64), k: usize, n: usize| low + (high - low) * k as f64 / n as f64;
+    let mut strips = Vec::new();
+    for (i, row) in stable.iter().enumerate() {
+        let (lower, upper) = (part(imaginary, i, stable.len()), part(imaginary, i + 1, stable.len()));
+        let mut j = 0;
+        while j < row.len() {
+            let length = row[j..].iter().take_while(|cell| **cell == row[j]).count();
+            if row[j] {
+                strips.push([part(real, j, row.len()), part(real, j + length, row.len()), lower, upper]);
+            }
+            j += length;
+        }
+    }
+    strips
+}
+
+/// Returns how the closed loop at h_opt passes noise on, over the frequency; `None` where no row has an optimum.
+pub fn frequency_figure(rows: &[(&str, &Analysis)]) -> Option<Figure> {
+    let places: [(&str, fn(&FrequencyResponse) -> f64); 3] = [
+        ("residual", |r| r.residual),
+        ("feedforward / \u{3c3}", |r| r.feedforward_per_sigma),
+        ("joint state", |r| r.state),
+    ];
+    let mut marks = Vec::new();
+    let mut titles = Vec::new();
+    for (id, analysis) in rows {
+        let Some(optimum) = analysis.optimum() else { continue };
+        titles.push(format!("{id}, h = {:.4}", optimum.h));
+        let response = analysis.frequency_response(optimum.h, 600);
+        for (name, value) in places {
+            let name = if rows.len() == 1 { name.to_owned() } else { format!("{id}, {name}") };
+            let points = response.iter().map(|r| (r.omega, value(r))).collect();
+            marks.push(Mark::Line { name, points, parameter: Vec::new(), style: marks.len() });
+        }
+    }
+    let values = || {
+        marks.iter().flat_map(|mark| match mark {
+            Mark::Line { points, .. } => points.as_slice(),
+            _ => &[],
+        })
+    };
+    let high = values().map(|p| p.1).filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let low = values().map(|p| p.1).filter(|v| *v > 1e-3 * high).fold(high, f64::min);
+    let names = rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
+    (!titles.is_empty()).then(|| Figure {
+        name: format!("{}-noise", names.join("-")),
+        title: format!("{}: what becomes of noise", titles.join("; ")),
+        x: Axis::new("angular frequency \u{3c9} [rad per step]", "omega", Scale::Angle, (0.0, PI)),
+        y: Axis::new("amplification", "gain", Scale::Logarithmic, (0.7 * low, 1.5 * high)),
+        is_isometric: false,
+        parameter: None,
+        marks,
+    })
+}
+
+/// Returns the rows of one number of steps and order as points (h_max, C), those that no other row beats in
+/// h_max, C and r_opt together marked.
+pub fn pareto_figure(steps: usize, order: usize, rows: &[&Formula], front: &[&Formula]) -> Figure {
+    let at = |row: &Formula| (row.feedback_range().value(), rational_to_f64(row.per_step_constant()).abs());
+    let on_front = |row: &&&Formula| front.iter().any(|f| f.id() == row.id());
+    let beaten: Vec<(f64, f64)> = rows.iter().filter(|row| !on_front(row)).map(|row| at(row)).collect();
+    let mut leaders: Vec<&Formula> = rows.iter().filter(on_front).copied().collect();
+    leaders.sort_by(|a, b| at(a).0.total_cmp(&at(b).0));
+    let mut marks = Vec::new();
+    if !beaten.is_empty() {
+        let name = "beaten by another".to_owned();
+        marks.push(Mark::Points { name, points: beaten, shape: Shape::Circle, style: 6 });
+    }
+    for (k, row) in leaders.iter().enumerate() {
+        let radius = row.optimum().map_or(f64::NAN, |optimum| optimum.radius);
+        let name = format!("{} (r_opt {radius:.3})", row.id());
+        let shape = [Shape::Disk, Shape::Diamond, Shape::Square, Shape::Cross][k % 4];
+        marks.push(Mark::Points { name, points: vec![at(row)], shape, style: k });
+    }
+    let high = |part: fn((f64, f64)) -> f64| 1.1 * rows.iter().map(|row| part(at(row))).fold(0.0, f64::max);
+    Figure {
+        name: format!("pareto-{steps}-{order}"),
+        title: format!("{steps} steps, order {order}: range against error"),
+        x: Axis::new("end of the feedback range h_max", "h_max", Scale::Linear, (0.0, high(|p| p.0))),
+        y: Axis::new("error per step |C|", "C", Scale::Linear, (0.0, high(|p| p.1))),
+        is_isometric: false,
+        parameter: None,
+        marks,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::FormulaTable;
+
+    fn row(id: &str) -> (&str, &'static Analysis) {
+        (id, FormulaTable::builtin().get(id).expect("a built-in row").analysis())
+    }
+
+    #[test]
+    fn every_formula_has_a_portrait_without_a_stray_number() {
+        for formula in FormulaTable::builtin().iter().filter(|formula| formula.steps() <= 6).step_by(3) {
+            for figure in portrait(formula.id(), formula.analysis()) {
+                let svg = figure.to_svg();
+                assert!(!svg.contains("NaN") && !svg.contains("inf"), "{}", figure.name);
+                roxmltree::Document::parse(&svg).expect("well-formed");
+                assert!(figure.to_csv().lines().count() > 1, "{}", figure.name);
+            }
+        }
+    }
+
+    #[test]
+    fn pictures_are_the_same_every_time() {
+        let (id, analysis) = row("la6-wang-guo");
+        let draw = || portrait(id, analysis).iter().map(Figure::to_svg).collect::<String>();
+        assert_eq!(draw(), draw());
+    }
+
+    #[test]
+    fn a_row_without_a_best_feedback_step_has_no_frequency_response() {
+        assert!(frequency_figure(&[row("la3-leapfrog")]).is_none());
+        assert!(frequency_figure(&[row("split-ab4")]).is_some());
+    }
+}

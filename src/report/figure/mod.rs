@@ -1,0 +1,19 @@
+//! Figures as SVG in one style, each with its numbers as CSV.
+//!
+//! A [`Figure`] is axes and marks; [`Figure::to_svg`] draws it, [`Figure::to_csv`] writes the numbers down. Colours
+//! are those of Okabe and Ito, which people with any kind of colour vision tell apart, and no mark is told by its colour alone.
+
+mod axis;
+#[expect(clippy::module_inception, reason = "the file is named after the one type it holds")]
+mod figure;
+mod formula;
+mod sheet;
+mod style;
+mod svg;
+
+pub use axis::{Axis, Scale};
+pub use figure::{Figure, Mark, Shape};
+pub use formula::{
+    frequency_figure, locus_figure, pareto_figure, portrait, radius_figure, region_figure, roots_figure,
+};
+pub use sheet::sheet;
