@@ -94,14 +94,23 @@ pub(super) struct ReproduceArguments {
 #[derive(Debug, Subcommand)]
 pub(super) enum FormulaCommand {
     /// List the formulas: built-in ones and those of --formulas
-    #[command(after_help = "Examples:\n  kinstep formula list\n  kinstep formula list --formulas mine.toml")]
-    List,
+    #[command(after_help = "\
+Examples:
+  kinstep formula list
+  kinstep formula list --order 3 --steps 4-6 --zero-stable --sort decay
+  kinstep formula list --recommended
+  kinstep formula list --derivative-rules
+  kinstep formula list --formulas mine.toml")]
+    List(FormulaList),
     /// Show formulas in full, by id or typed at the prompt
     #[command(after_help = "\
 Examples:
   kinstep formula show la6-wang-guo split-ab6
   kinstep formula show --difference 24,-5,-12,-6,-4,3 --denominator 48
   kinstep formula show --alpha 1,-1,0 --beta 0,3/2,-1/2 --gamma 0,1,0
+  kinstep formula show la6-wang-guo --plot pictures     five figures as SVG, their numbers as CSV
+  kinstep formula show la6-wang-guo --plot card.svg     all figures on one page
+  kinstep formula show split-ab6 --rust > split_ab6.rs
 
 Newest sample first: the first coefficient belongs to x_n+1.")]
     Show(FormulaShow),
@@ -134,6 +143,9 @@ The same arguments and seed find the same rows, whatever the number of threads, 
     /// Compare formulas side by side
     #[command(after_help = "Example:\n  kinstep formula compare la6-wang-guo la6-twenty-four split-ab4")]
     Compare(FormulaCompare),
+    /// Write the page about all formulas, in Markdown, with its pictures
+    #[command(after_help = "Example:\n  kinstep formula docs --out docs/formulas.md --force")]
+    Docs(FormulaDocs),
 }
 
 #[derive(Debug, Args)]
@@ -228,6 +240,74 @@ pub(super) struct FormulaCompare {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct FormulaList {
+    /// Only formulas of this family. May be given again
+    #[arg(long, value_name = "NAME")]
+    pub(super) family: Vec<String>,
+
+    /// Only this number of steps, or a range such as 4-6
+    #[arg(long, value_name = "N", value_parser = span)]
+    pub(super) steps: Option<(usize, usize)>,
+
+    /// Only this order, or a range such as 3-5
+    #[arg(long, value_name = "N", value_parser = span)]
+    pub(super) order: Option<(usize, usize)>,
+
+    /// Only formulas that are zero-stable
+    #[arg(long)]
+    pub(super) zero_stable: bool,
+
+    /// Best first by this column; formulas without it come last
+    #[arg(long, value_name = "KEY")]
+    pub(super) sort: Option<SortKey>,
+
+    /// The formula to use for each number of steps and order, and why
+    #[arg(long, conflicts_with_all = ["sort", "derivative_rules"])]
+    pub(super) recommended: bool,
+
+    /// The rules for the derivative of a reference that is known by its samples
+    #[arg(long, conflicts_with_all = ["family", "steps", "zero_stable", "sort"])]
+    pub(super) derivative_rules: bool,
+}
+
+/// Reads `5` or `4-6`.
+fn span(text: &str) -> Result<(usize, usize), String> {
+    let number = |part: &str| {
+        part.trim().parse::<usize>().map_err(|_| format!("\"{part}\" is no number; give one, or a range such as 4-6"))
+    };
+    let (low, high) = text.split_once('-').unwrap_or((text, text));
+    let (low, high) = (number(low)?, number(high)?);
+    if low > high { Err(format!("the range {low}-{high} is empty")) } else { Ok((low, high)) }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum SortKey {
+    /// Highest order first
+    Order,
+    /// Widest feedback range first
+    Range,
+    /// Least error constant c first
+    ErrorConstant,
+    /// Least r_opt first
+    Decay,
+    /// Least gain from feedforward noise at h_opt first
+    Noise,
+    /// By name
+    Id,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct FormulaDocs {
+    /// The page; its pictures go into the folder `pictures` beside it
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: PathBuf,
+
+    /// Replace files that are already there
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct FormulaShow {
     /// Ids of formulas
     #[arg(value_name = "ID")]
@@ -252,6 +332,31 @@ pub(super) struct FormulaShow {
     /// Weights of the feedback g; those of f unless given
     #[arg(long, value_name = "G,...", allow_hyphen_values = true, requires = "alpha")]
     pub(super) gamma: Option<String>,
+
+    /// Draw the formulas: into a folder, a file per figure, or all on one page when the name ends in .svg; numbers
+    /// go beside as CSV
+    #[arg(long, value_name = "DIR|FILE")]
+    pub(super) plot: Option<PathBuf>,
+
+    /// Replace figures that are already there
+    #[arg(long, requires = "plot")]
+    pub(super) force: bool,
+
+    /// Print the recursion in LaTeX instead of the card
+    #[arg(long)]
+    pub(super) latex: bool,
+
+    /// Print the weights and the recursion as Rust code instead of the card
+    #[arg(long)]
+    pub(super) rust: bool,
+
+    /// Print the weights and the recursion as Python code instead of the card
+    #[arg(long)]
+    pub(super) python: bool,
+
+    /// Print the source as a BibTeX entry instead of the card
+    #[arg(long)]
+    pub(super) bibtex: bool,
 }
 
 #[derive(Debug, Args)]

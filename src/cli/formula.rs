@@ -2,13 +2,20 @@
 
 use std::path::Path;
 
-use super::arguments::{FormulaCheck, FormulaCommand, FormulaShow};
+use serde::Serialize;
+
+use super::arguments::{FormulaCheck, FormulaCommand, FormulaDocs, FormulaList as Wanted, FormulaShow};
 use super::failure::{Exit, Failure};
-use super::formula_card::{Card, Cards, FormulaList};
-use super::output::Output;
+use super::formula_card::{Card, Cards};
+use super::formula_list::{FormulaList, Recommended, RuleList};
+use super::formula_plot::{plot, write_all};
+use super::output::{Output, Show};
 use super::{formula_compare, formula_derive, formula_search};
-use crate::formula::{CheckedRow, DefectKind, FormulaTable, Row, Strictness, read_rows};
-use crate::scenario::{read_text, row_refusals};
+use crate::formula::{
+    Analysis, CheckedRow, DefectKind, Formula, FormulaTable, Row, Snippet, Strictness, bibtex, read_rows,
+};
+use crate::report::FormulaPage;
+use crate::scenario::{FormulaRows, read_text, row_refusals};
 
 /// What a row that is typed at the prompt is called.
 const TYPED: &str = "typed";
@@ -20,16 +27,60 @@ pub(super) fn run(
 ) -> Result<Exit, Failure> {
     let own_rows = own.map(|file| rows_of(file, Strictness::Finished)).transpose()?.unwrap_or_default();
     match command {
-        FormulaCommand::List => {
-            let list = FormulaList::new(FormulaTable::builtin(), own_rows);
-            output.show(&list)?;
-            Ok(verdict(list.is_sound()))
-        }
-        FormulaCommand::Show(arguments) => show(&cards(arguments, &own_rows)?, output),
+        FormulaCommand::List(wanted) => list(wanted, own, own_rows, output),
+        FormulaCommand::Show(arguments) => show_rows(arguments, &own_rows, output),
         FormulaCommand::Check(arguments) => check(arguments, output),
         FormulaCommand::Derive(arguments) => formula_derive::run(arguments, output),
         FormulaCommand::Search(arguments) => formula_search::run(arguments, &own_rows, output),
         FormulaCommand::Compare(arguments) => formula_compare::run(arguments, &own_rows, output),
+        FormulaCommand::Docs(arguments) => docs(arguments, output),
+    }
+}
+
+fn list(
+    wanted: &Wanted,
+    own: Option<&Path>,
+    own_rows: Vec<Row>,
+    output: &mut Output,
+) -> Result<Exit, Failure> {
+    if wanted.derivative_rules {
+        output.show(&RuleList::new(wanted.order))?;
+        return Ok(Exit::Done);
+    }
+    if wanted.recommended {
+        let mut rows = FormulaRows::default();
+        if let Some(file) = own {
+            rows.add_file(file)?;
+        }
+        // No row has an empty id: this is the table of all rows that hold what they declare.
+        output.show(&Recommended::new(rows.table_for("")?, wanted)?)?;
+        return Ok(Exit::Done);
+    }
+    let list = FormulaList::new(FormulaTable::builtin(), own_rows, wanted)?;
+    output.show(&list)?;
+    Ok(verdict(list.is_sound()))
+}
+
+fn docs(arguments: &FormulaDocs, output: &mut Output) -> Result<Exit, Failure> {
+    let FormulaPage { markdown, pictures } = FormulaPage::of(FormulaTable::builtin());
+    let folder = arguments.out.parent().unwrap_or(Path::new(""));
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let name = arguments.out.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut written = write_all(folder, arguments.force, &[(name, markdown)])?;
+    written.extend(write_all(&folder.join("pictures"), arguments.force, &pictures)?);
+    output.show(&Written { written })?;
+    Ok(Exit::Done)
+}
+
+/// Names of files.
+#[derive(Serialize)]
+struct Written {
+    written: Vec<String>,
+}
+
+impl Show for Written {
+    fn text(&self) -> String {
+        self.written.iter().map(|name| format!("{name}\n")).collect()
     }
 }
 
@@ -42,29 +93,90 @@ fn show(cards: &Cards, output: &mut Output) -> Result<Exit, Failure> {
     Ok(verdict(cards.is_sound()))
 }
 
-fn cards(arguments: &FormulaShow, own_rows: &[Row]) -> Result<Cards, Failure> {
-    let mut cards = Vec::new();
+fn show_rows(arguments: &FormulaShow, own_rows: &[Row], output: &mut Output) -> Result<Exit, Failure> {
+    let shown = shown(arguments, own_rows)?;
+    if let Some(path) = &arguments.plot {
+        let rows: Vec<(&str, &Analysis)> = shown.iter().map(Shown::analysed).collect();
+        let written = plot(path, arguments.force, &rows)?;
+        if !output.wants_json() {
+            output.remark(&format!("written: {}", written.join(", ")));
+        }
+    }
+    let cards = shown.iter().map(|shown| with_snippets(shown.card(), shown, arguments)).collect();
+    show(&Cards::new(cards), output)
+}
+
+/// What is shown: a formula of the table, or a row of somebody's own.
+enum Shown {
+    Builtin(&'static Formula),
+    Own(CheckedRow, bool),
+}
+
+impl Shown {
+    fn analysed(&self) -> (&str, &Analysis) {
+        match self {
+            Self::Builtin(formula) => (formula.id(), formula.analysis()),
+            Self::Own(checked, _) => (checked.row().id(), checked.analysis()),
+        }
+    }
+
+    fn source(&self) -> Option<&str> {
+        match self {
+            Self::Builtin(formula) => Some(formula.source()),
+            Self::Own(checked, _) => checked.row().source.as_deref(),
+        }
+    }
+
+    fn card(&self) -> Card {
+        match self {
+            Self::Builtin(formula) => Card::of_formula(formula),
+            Self::Own(checked, is_typed) => Card::of_row(checked, *is_typed),
+        }
+    }
+}
+
+fn with_snippets(card: Card, shown: &Shown, arguments: &FormulaShow) -> Card {
+    let (id, analysis) = shown.analysed();
+    let languages = [
+        (arguments.latex, "latex", Snippet::Latex),
+        (arguments.rust, "rust", Snippet::Rust),
+        (arguments.python, "python", Snippet::Python),
+    ];
+    let asked = languages.into_iter().filter(|(asked, ..)| *asked);
+    let card = asked.fold(card, |card, (_, name, language)| card.with_snippet(name, language.of(id, analysis)));
+    if !arguments.bibtex {
+        return card;
+    }
+    let source = shown.source().unwrap_or_default();
+    let entry = bibtex(source).map_or_else(
+        || format!("% {id}: there is no entry for the source \"{source}\"\n"),
+        |entry| format!("{entry}\n"),
+    );
+    card.with_snippet("bibtex", entry)
+}
+
+fn shown(arguments: &FormulaShow, own_rows: &[Row]) -> Result<Vec<Shown>, Failure> {
+    let mut shown = Vec::new();
     for id in &arguments.ids {
-        let card = match own_rows.iter().find(|row| row.id() == id) {
-            Some(row) => Card::of_row(&row.clone().check(), false),
+        shown.push(match own_rows.iter().find(|row| row.id() == id) {
+            Some(row) => Shown::Own(row.clone().check(), false),
             None => match FormulaTable::builtin().get(id) {
-                Ok(formula) => Card::of_formula(formula),
+                Ok(formula) => Shown::Builtin(formula),
                 Err(unknown) => return Err(Failure::usage(unknown.to_string())),
             },
-        };
-        cards.push(card);
+        });
     }
     if let Some(row) =
         typed_row(arguments).transpose().map_err(|kind| Failure::new(Exit::Formula, kind.to_string()))?
     {
-        cards.push(Card::of_row(&row.check(), true));
+        shown.push(Shown::Own(row.check(), true));
     }
-    if cards.is_empty() {
+    if shown.is_empty() {
         let ways = "name rows to show, or type one: --difference 24,-5,-12,-6,-4,3 --denominator 48, \
                     or --alpha 1,-1,0 --beta 0,3/2,-1/2";
         return Err(Failure::usage(ways));
     }
-    Ok(Cards::new(cards))
+    Ok(shown)
 }
 
 /// The row of an id, the user's own before the built-in ones.

@@ -1,33 +1,36 @@
-//! One formula as a card, many as a list.
+//! One formula as a card.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use num_traits::ToPrimitive;
 use serde::Serialize;
 
 use super::output::Show;
-use crate::formula::{Analysis, CheckedRow, Coefficients, Formula, FormulaTable, Row};
-use crate::math::{Rational, RootCondition};
-use crate::report::{Table, short};
+use crate::formula::{Analysis, CheckedRow, Coefficients, Formula, NoiseGain, Row, recursion};
+use crate::math::{AlgebraicNumber, Rational, RootCondition};
 
 /// What a line of the list and a card have in common.
 #[derive(Serialize)]
 #[expect(clippy::struct_excessive_bools, reason = "they are keys of a document")]
-struct Facts {
-    id: String,
+pub(super) struct Facts {
+    pub(super) id: String,
     name: Option<String>,
-    family: Option<String>,
-    steps: usize,
-    order: Option<usize>,
-    error_constant: Option<String>,
+    pub(super) family: Option<String>,
+    pub(super) steps: usize,
+    pub(super) order: Option<usize>,
+    pub(super) error_constant: Option<String>,
     explicit: bool,
     split: bool,
-    zero_stable: bool,
+    pub(super) zero_stable: bool,
     strictly_zero_stable: bool,
-    h_max: HMax,
-    declared_ok: bool,
+    pub(super) h_max: HMax,
+    pub(super) h_opt: Option<f64>,
+    pub(super) r_opt: Option<f64>,
+    pub(super) noise_gain: Option<Noise>,
+    pub(super) declared_ok: bool,
     #[serde(skip)]
-    constant: Option<f64>,
+    pub(super) constant: Option<f64>,
     #[serde(skip)]
     condition: RootCondition,
 }
@@ -45,33 +48,88 @@ pub(super) struct Card {
     gamma: Vec<String>,
     per_step_constant: Option<String>,
     root_moduli: Vec<f64>,
-    h_opt: Option<f64>,
-    r_opt: Option<f64>,
-    noise_gain: Option<Noise>,
+    /// z of each root of rho: real and imaginary part, largest modulus first.
+    roots: Vec<[f64; 2]>,
+    recursion: String,
+    h_opt_exact: Option<Exact>,
+    r_opt_squared_exact: Option<Exact>,
+    /// What makes h_opt the best.
+    optimum_cause: Option<&'static str>,
+    ssp_coefficient: Option<String>,
     problems: Vec<String>,
     remarks: Vec<String>,
     /// The finished row, where a draft is checked or a row is typed.
     #[serde(skip_serializing_if = "Option::is_none")]
     toml: Option<String>,
+    /// The row in other languages, as asked for.
+    #[serde(flatten)]
+    snippets: BTreeMap<&'static str, String>,
     #[serde(skip)]
     spelling: String,
 }
 
 /// The end of the feedback range: exact where it is a fraction, else by the polynomial that it is a root of.
 #[derive(Clone, Default, Serialize)]
-struct HMax {
+pub(super) struct HMax {
     exact: Option<String>,
     polynomial: Option<String>,
-    value: Option<f64>,
-    unbounded: bool,
+    /// Two fractions with an irrational end between them.
+    certified_interval: Option<[String; 2]>,
+    pub(super) value: Option<f64>,
+    pub(super) unbounded: bool,
 }
 
 #[derive(Serialize)]
-struct Noise {
+pub(super) struct Noise {
     h: f64,
-    residual: f64,
-    feedforward_per_sigma: f64,
+    pub(super) residual: f64,
+    pub(super) feedforward_per_sigma: f64,
     state: f64,
+}
+
+impl Noise {
+    fn of(gain: NoiseGain) -> Self {
+        let NoiseGain { h, residual, feedforward_per_sigma, state } = gain;
+        Self { h, residual, feedforward_per_sigma, state }
+    }
+}
+
+/// An algebraic number: in closed form, or by a polynomial and an interval.
+#[derive(Serialize)]
+struct Exact {
+    closed_form: Option<String>,
+    polynomial: Option<String>,
+    interval: Option<[String; 2]>,
+    value: f64,
+}
+
+impl Exact {
+    fn of(number: &AlgebraicNumber, variable: &str) -> Self {
+        let root = match number {
+            AlgebraicNumber::Root(root) => Some(root),
+            _ => None,
+        };
+        Self {
+            closed_form: number.closed_form(),
+            polynomial: root.map(|root| root.polynomial().normalised().to_text(variable)),
+            interval: root.map(|root| interval(root.interval())),
+            value: number.to_f64(),
+        }
+    }
+
+    /// `closed form`, or `a root of ...`; a polynomial too long to read is told by its degree.
+    fn text(&self) -> String {
+        const READABLE: usize = 100;
+        match (&self.closed_form, &self.polynomial) {
+            (Some(closed), _) => closed.clone(),
+            (None, Some(polynomial)) if polynomial.len() <= READABLE => format!("a root of {polynomial}"),
+            _ => "algebraic of high degree (--json has the polynomial)".to_owned(),
+        }
+    }
+}
+
+fn interval((low, high): (&Rational, &Rational)) -> [String; 2] {
+    [low.to_string(), high.to_string()]
 }
 
 impl HMax {
@@ -83,12 +141,13 @@ impl HMax {
         Self {
             exact: range.exact().map(|exact| exact.to_string()),
             polynomial: range.polynomial(),
+            certified_interval: range.certified_interval().map(interval),
             value: Some(range.value()).filter(|value| value.is_finite()),
             unbounded: range.is_unbounded(),
         }
     }
 
-    fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         match (&self.exact, self.value) {
             _ if self.unbounded => "unbounded".to_owned(),
             (Some(exact), _) if exact.len() <= 9 => exact.clone(),
@@ -117,8 +176,8 @@ impl Card {
 
     fn new(row: &Row, analysis: &Analysis, problems: Vec<String>) -> Self {
         let weights = |list: &[Rational]| list.iter().map(ToString::to_string).collect();
-        let optimum = analysis.optimum();
-        let noise = optimum.and_then(|optimum| analysis.noise_gain(optimum.h));
+        let closed_form = analysis.closed_form();
+        let squared = closed_form.as_ref().and_then(|form| form.radius_squared.as_ref());
         Self {
             facts: Facts::new(row, analysis, problems.is_empty()),
             source: row.source.clone(),
@@ -129,19 +188,24 @@ impl Card {
             gamma: weights(analysis.gamma()),
             per_step_constant: analysis.per_step_constant().map(ToString::to_string),
             root_moduli: analysis.root_moduli().to_vec(),
-            h_opt: optimum.map(|optimum| optimum.h),
-            r_opt: optimum.map(|optimum| optimum.radius),
-            noise_gain: noise.map(|noise| Noise {
-                h: noise.h,
-                residual: noise.residual,
-                feedforward_per_sigma: noise.feedforward_per_sigma,
-                state: noise.state,
-            }),
+            roots: analysis.roots().iter().map(|z| [z.re, z.im]).collect(),
+            recursion: recursion(analysis),
+            h_opt_exact: closed_form.as_ref().map(|form| Exact::of(&form.h, "h")),
+            r_opt_squared_exact: squared.map(|squared| Exact::of(squared, "R")),
+            optimum_cause: closed_form.as_ref().map(|form| form.cause.words()),
+            ssp_coefficient: analysis.ssp_coefficient().map(|c| c.to_string()),
+            snippets: BTreeMap::new(),
             problems,
             remarks: Vec::new(),
             toml: None,
             spelling: spelling(row),
         }
+    }
+
+    /// Adds the row in another language; then that is what is printed.
+    pub(super) fn with_snippet(mut self, language: &'static str, text: String) -> Self {
+        self.snippets.insert(language, text);
+        self
     }
 
     fn stability(&self) -> &'static str {
@@ -164,6 +228,7 @@ impl Card {
             let _ = writeln!(text, "  {label:<16}{value}");
         };
         line("formula", &self.spelling);
+        line("recursion", &self.recursion);
         let kind = [
             if self.facts.explicit { "explicit" } else { "implicit" },
             if self.facts.split { ", split feedback" } else { "" },
@@ -183,10 +248,14 @@ impl Card {
             _ => line("order", "none: the row is inconsistent"),
         }
         line("stability", self.stability());
+        line("roots", &roots_text(&self.roots));
         line(
             "root moduli",
             &self.root_moduli.iter().map(|m| format!("{m:.6}")).collect::<Vec<_>>().join(", "),
         );
+        if let Some(c) = &self.ssp_coefficient {
+            line("SSP", &format!("{c}: keeps what Euler's method keeps, up to {c} times its step"));
+        }
         self.closed_loop_lines(&mut line);
         for (label, value) in
             [("source", &self.source), ("attribution", &self.attribution), ("note", &self.note)]
@@ -204,7 +273,7 @@ impl Card {
     }
 
     fn closed_loop_lines(&self, line: &mut impl FnMut(&str, &str)) {
-        let HMax { exact, polynomial, value, unbounded } = &self.facts.h_max;
+        let HMax { exact, polynomial, value, unbounded, .. } = &self.facts.h_max;
         line(
             "feedback range",
             &match (exact.as_deref(), value) {
@@ -221,10 +290,8 @@ impl Card {
                 _ => "none".to_owned(),
             },
         );
-        if let (Some(h), Some(r)) = (self.h_opt, self.r_opt) {
-            line("best h", &format!("{h:.6}, where errors decay by {r:.6} per step"));
-        }
-        if let Some(noise) = &self.noise_gain {
+        self.optimum_lines(line);
+        if let Some(noise) = &self.facts.noise_gain {
             line(
                 "noise gains",
                 &format!(
@@ -234,6 +301,40 @@ impl Card {
             );
         }
     }
+}
+
+impl Card {
+    fn optimum_lines(&self, line: &mut impl FnMut(&str, &str)) {
+        let (Some(h), Some(r)) = (self.facts.h_opt, self.facts.r_opt) else { return };
+        line("best h", &format!("{h:.6}, where errors decay by {r:.6} per step"));
+        let Some(exact) = &self.h_opt_exact else {
+            line("  exactly", "out of reach for a row of this length; the figures are numeric");
+            return;
+        };
+        let cause = self.optimum_cause.map_or_else(String::new, |cause| format!("; {cause}"));
+        line("  h exactly", &format!("{}{cause}", exact.text()));
+        match &self.r_opt_squared_exact {
+            Some(squared) if squared.value == 0.0 => {}
+            Some(squared) => line("  r^2 exactly", &squared.text()),
+            None => line("  r^2 exactly", "not found; the figure is numeric"),
+        }
+    }
+
+    /// What is printed: the card, or the languages that were asked for.
+    fn printed(&self) -> String {
+        if self.snippets.is_empty() { self.text() } else { self.snippets.values().cloned().collect::<Vec<_>>().join("\n") }
+    }
+}
+
+/// Roots as people write them, a pair once.
+fn roots_text(roots: &[[f64; 2]]) -> String {
+    let part = |x: f64| if x.abs() < 5e-7 { 0.0 } else { x };
+    let upper = roots.iter().filter(|z| part(z[1]) >= 0.0);
+    let text = upper.map(|&[re, im]| match (part(re), part(im)) {
+        (re, 0.0) => format!("{re:.6}"),
+        (re, im) => format!("{re:.6} +- {im:.6} i"),
+    });
+    text.collect::<Vec<_>>().join(", ")
 }
 
 /// The coefficients as they were written.
@@ -268,35 +369,16 @@ impl Cards {
 
 impl Show for Cards {
     fn text(&self) -> String {
-        let cards: Vec<String> = self.formulas.iter().map(Card::text).collect();
+        let cards: Vec<String> = self.formulas.iter().map(Card::printed).collect();
         cards.join("\n")
     }
 }
 
-/// One line per formula.
-#[derive(Serialize)]
-pub(super) struct FormulaList {
-    formulas: Vec<Facts>,
-}
-
-impl FormulaList {
-    pub(super) fn new(table: &FormulaTable, own_rows: Vec<Row>) -> Self {
-        let builtin = table.iter().map(|formula| Facts::new(formula.row(), formula.analysis(), true));
-        let own = own_rows.into_iter().map(|row| {
-            let checked = row.check();
-            Facts::new(checked.row(), checked.analysis(), checked.contradictions().is_empty())
-        });
-        Self { formulas: builtin.chain(own).collect() }
-    }
-
-    pub(super) fn is_sound(&self) -> bool {
-        self.formulas.iter().all(|line| line.declared_ok)
-    }
-}
-
 impl Facts {
-    fn new(row: &Row, analysis: &Analysis, declared_ok: bool) -> Self {
+    pub(super) fn new(row: &Row, analysis: &Analysis, declared_ok: bool) -> Self {
         let constant = analysis.error_constant();
+        let optimum = analysis.optimum();
+        let noise = optimum.and_then(|optimum| analysis.noise_gain(optimum.h));
         Self {
             id: row.id().to_owned(),
             name: row.name.clone(),
@@ -310,12 +392,15 @@ impl Facts {
             zero_stable: analysis.is_zero_stable(),
             strictly_zero_stable: analysis.is_strictly_zero_stable(),
             h_max: HMax::of(analysis),
+            h_opt: optimum.map(|optimum| optimum.h),
+            r_opt: optimum.map(|optimum| optimum.radius),
+            noise_gain: noise.map(Noise::of),
             declared_ok,
             condition: analysis.root_condition(),
         }
     }
 
-    fn remark(&self) -> &'static str {
+    pub(super) fn remark(&self) -> &'static str {
         match (self.declared_ok, self.zero_stable, self.strictly_zero_stable, self.explicit) {
             (false, ..) => "declares what is not so",
             (_, false, ..) => "unstable specimen",
@@ -323,27 +408,5 @@ impl Facts {
             (.., false) => "implicit, not run yet",
             _ => "",
         }
-    }
-}
-
-impl Show for FormulaList {
-    fn text(&self) -> String {
-        let mut table = Table::new(["id", "family", "steps", "order", "c", "h_max", ""]);
-        for line in &self.formulas {
-            let constant = match &line.error_constant {
-                Some(exact) if exact.len() <= 9 => exact.clone(),
-                _ => line.constant.map_or_else(|| "-".to_owned(), short),
-            };
-            let order = line.order.map_or_else(|| "-".to_owned(), |order| order.to_string());
-            let cells =
-                [line.steps.to_string(), order, constant, line.h_max.text(), line.remark().to_owned()];
-            let family = line.family.clone().unwrap_or_default();
-            table.row([line.id.clone(), family].into_iter().chain(cells));
-        }
-        format!(
-            "{table}\n{} formulas; c: error constant; 0 < h < h_max: feedback steps with a stable loop.\n\
-             `kinstep formula show ID` shows one in full.\n",
-            self.formulas.len()
-        )
     }
 }

@@ -7,6 +7,8 @@ mod formula;
 mod formula_card;
 mod formula_compare;
 mod formula_derive;
+mod formula_list;
+mod formula_plot;
 mod formula_schema;
 mod formula_search;
 mod output;

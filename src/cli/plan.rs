@@ -25,14 +25,18 @@ pub(super) fn run(
     output: &mut Output,
 ) -> Result<Exit, Failure> {
     let text = scenario_text(arguments)?;
-    let scenario = text.scenario()?;
+    let mut scenario = text.scenario()?;
     let rows = formula_rows(&text, &scenario, own)?;
-    let table = rows.table_for(&scenario.formula)?;
+    // No row has an empty id: without a formula there is nothing to refuse.
+    let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
     let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
     let folder =
         arguments.out.as_deref().map(|path| Folder::open(path, arguments.force, &NAMES)).transpose()?;
     let mut plan = run_planner(planner);
     plan.warnings.extend(rows.warnings());
+    let names_formula = scenario.formula.is_some();
+    // What is written down says what was run, whatever the default becomes later.
+    scenario.formula.get_or_insert_with(|| plan.formula.clone());
     if let Some(folder) = &folder {
         folder.write("trajectory.csv", |out| PlanCsv.write(&plan, out))?;
         folder.write("plan.json", |out| PlanJson.write(&plan, out))?;
@@ -47,8 +51,13 @@ pub(super) fn run(
         } else {
             ""
         };
+        let chosen = if names_formula {
+            String::new()
+        } else {
+            format!("The scenario names no formula: {} does best in general (kinstep formula list --recommended).\n", plan.formula)
+        };
         output.text(&format!(
-            "{head}{}{}",
+            "{head}{chosen}{}{}",
             written(&PlanText, &plan),
             closing(arguments, &plan, table, &scenario)
         ))?;

@@ -72,7 +72,7 @@ const GRID_H: [f64; 6] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
 impl Experiment {
     fn scenario(&self) -> Result<Scenario, Failure> {
         let mut scenario = ScenarioText::parse(self.text)?.scenario()?;
-        self.formula.clone_into(&mut scenario.formula);
+        scenario.formula = Some(self.formula.to_owned());
         scenario.sigma = self.sigma.into();
         scenario.law.h = Some(self.h.into());
         Ok(scenario)

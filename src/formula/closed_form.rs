@@ -62,6 +62,9 @@ pub struct ClosedForm {
 /// Resultants that take more multiplications than this are left alone: seconds, not minutes.
 const MOST_WORK: usize = 1_500_000;
 
+/// The longest row whose products of pairs are formed.
+const MOST_PAIRED: usize = 8;
+
 /// How far a root may lie from the numeric optimum, relative to it.
 const AGREEMENT: f64 = 1e-9;
 
@@ -135,7 +138,8 @@ impl Elimination {
             real: even.norm_over_root_of_y(&odd),
             whole: Bivariate::new((0..=n).map(coefficient).collect()),
             meeting: &(&rho.derivative() * gamma) - &(rho * &gamma.derivative()),
-            pairs: pair_products(closed_loop),
+            // Zero, and so without candidates, where nothing that needs it would be within reach.
+            pairs: if n <= MOST_PAIRED { pair_products(closed_loop) } else { Bivariate::new(Vec::new()) },
             even,
             odd,
         }

@@ -112,6 +112,14 @@ impl FormulaTable {
         Ok(Self { formulas })
     }
 
+    /// Returns the formulas of these families, in the order of this table; all of them for no family.
+    pub fn of_families<S: AsRef<str>>(&self, families: &[S]) -> Self {
+        let is_wanted = |formula: &&Formula| {
+            families.is_empty() || families.iter().any(|name| name.as_ref() == formula.family())
+        };
+        Self { formulas: self.iter().filter(is_wanted).cloned().collect() }
+    }
+
     /// Returns the formula that carries a start on when only `known_states` states are known: of the same family as `formula`,
     /// explicit, strictly zero-stable, with no more steps than that and no more than it has itself.
     ///

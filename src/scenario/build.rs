@@ -10,7 +10,7 @@ use super::model::{ArmSpec, LawKind, Mount, Scenario, Start, TaskKind};
 use super::path_spec::{PathKind, PathSpec, Plane, TimeLawKind};
 use super::real::Real;
 use super::robots::RobotSource;
-use crate::formula::{Formula, FormulaTable};
+use crate::formula::{Duty, Formula, FormulaTable};
 use crate::law::Pseudoinverse;
 use crate::math::figure;
 use crate::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
@@ -33,10 +33,16 @@ impl Scenario {
         self.builder(formula).arms(arms).build().map_err(|e| self.refused(&e))
     }
 
-    /// Returns the row that the scenario names, if it may be run.
+    /// Returns the row that the scenario names, or the best general one, if it may be run.
     fn formula_of<'t>(&self, table: &'t FormulaTable) -> Result<&'t Formula, ScenarioError> {
         let at = KeyPath::dotted("formula");
-        let formula = table.get(&self.formula).map_err(|e| ScenarioError::at(ErrorKind::Scenario, &at, e))?;
+        let formula = match &self.formula {
+            Some(id) => table.get(id).map_err(|e| ScenarioError::at(ErrorKind::Scenario, &at, e))?,
+            None => match FormulaTable::builtin().best_for(&Duty::default()) {
+                Some((formula, _)) => formula,
+                None => return Err(ScenarioError::at(ErrorKind::Scenario, &at, "this key is missing")),
+            },
+        };
         let runnable =
             if self.allow_unstable { formula.runnable() } else { formula.runnable_with_feedback() };
         runnable.map_err(|e| ScenarioError::at(ErrorKind::Formula, &at, e))?;

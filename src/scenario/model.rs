@@ -14,8 +14,9 @@ pub struct Scenario {
     pub sigma: Real,
     /// Length of the motion in s.
     pub duration: Real,
-    /// Id of the formula row, built-in or from `formulas`.
-    pub formula: String,
+    /// Id of the formula row, built-in or from `formulas`. Default: the built-in row that does best in the standard duty.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula: Option<String>,
     /// How the first states are made. Default: the cheapest Runge-Kutta start of sufficient order.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Start>,

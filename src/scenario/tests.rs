@@ -179,7 +179,7 @@ fn values_are_set_from_outside_by_the_names_of_arms() {
         with(&["arm.left.q0=[0.1, \"pi/2\", 3, 4]", "formula=split-ab6", "arm.left.path.radius=pi/10"])
             .unwrap();
     assert_eq!(scenario.arm[0].q0[1].value(), std::f64::consts::PI / 2.0);
-    assert_eq!(scenario.formula, "split-ab6");
+    assert_eq!(scenario.formula.as_deref(), Some("split-ab6"));
     assert_eq!(scenario.arm[0].path.radius.as_ref().unwrap().value(), std::f64::consts::PI / 10.0);
     assert_eq!(scenario.arm[1], read(SMALL).unwrap().arm[1]);
 }

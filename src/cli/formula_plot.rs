@@ -1,0 +1,70 @@
+//! Figures of formulas as files: SVG, and the numbers beside it as CSV.
+
+use std::path::Path;
+
+use super::failure::{Exit, Failure};
+use super::folder::Folder;
+use crate::formula::Analysis;
+use crate::report::figure::{Figure, portrait, sheet};
+
+/// Most steps of a row that is drawn: beyond, pictures are black.
+const MOST_DRAWN: usize = 40;
+
+/// Draws rows into a folder, a file per figure, or, where the name ends in `.svg`, on one page; returns the names written.
+pub(super) fn plot(path: &Path, force: bool, rows: &[(&str, &Analysis)]) -> Result<Vec<String>, Failure> {
+    if let Some((id, analysis)) = rows.iter().find(|(_, analysis)| analysis.steps() > MOST_DRAWN) {
+        let steps = analysis.steps();
+        return Err(Failure::usage(format!("{id} has {steps} steps; figures are drawn of up to {MOST_DRAWN}")));
+    }
+    let figures: Vec<Figure> = rows.iter().flat_map(|(id, analysis)| portrait(id, analysis)).collect();
+    let is_page = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
+    if is_page { page(path, force, rows, &figures) } else { folder(path, force, &figures) }
+}
+
+fn folder(path: &Path, force: bool, figures: &[Figure]) -> Result<Vec<String>, Failure> {
+    let files: Vec<(String, String)> = figures
+        .iter()
+        .flat_map(|figure| {
+            let name = |kind: &str| format!("{}.{kind}", figure.name);
+            [(name("svg"), figure.to_svg()), (name("csv"), figure.to_csv())]
+        })
+        .collect();
+    write_all(path, force, &files)
+}
+
+fn page(
+    path: &Path,
+    force: bool,
+    rows: &[(&str, &Analysis)],
+    figures: &[Figure],
+) -> Result<Vec<String>, Failure> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let beside = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let ids: Vec<&str> = rows.iter().map(|(id, _)| *id).collect();
+    // One table of numbers for the page: the name of the figure goes before each line.
+    let numbers: String = figures
+        .iter()
+        .map(|figure| figure.to_csv().lines().map(|line| format!("{},{line}\n", figure.name)).collect::<String>())
+        .collect();
+    let csv = Path::new(&name).with_extension("csv").to_string_lossy().into_owned();
+    write_all(beside, force, &[(name, sheet(&ids.join(", "), figures, 2)), (csv, numbers)])
+}
+
+/// Writes files of a folder, and returns their paths.
+pub(super) fn write_all(path: &Path, force: bool, files: &[(String, String)]) -> Result<Vec<String>, Failure> {
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let mut repeated = names.clone();
+    repeated.sort_unstable();
+    if let Some(pair) = repeated.windows(2).find(|pair| pair[0] == pair[1]) {
+        let message = format!("{} would be written twice; name each formula once", pair[0]);
+        return Err(Failure::new(Exit::Usage, message));
+    }
+    let folder = Folder::open(path, force, &names)?;
+    for (name, content) in files {
+        folder.write(name, |out| out.write_all(content.as_bytes()))?;
+    }
+    Ok(names.iter().map(|name| path.join(name).display().to_string()).collect())
+}
