@@ -104,17 +104,20 @@ impl Analysis {
     pub fn stability_region(&self, cells: usize) -> StabilityRegion {
         let (alpha, beta) = (floats(self.alpha()), floats(self.beta()));
         let boundary = boundary_locus(&alpha, &beta, 1440);
-        let (real, imaginary) = window(&boundary);
-        let cell = f64::max(real.1 - real.0, imaginary.1 - imaginary.0) / cells.max(1) as f64;
-        let middles = |(low, high): (f64, f64)| {
-            let count = ((high - low) / cell).round().max(1.0) as usize;
-            (0..count).map(move |k| low + (k as f64 + 0.5) * (high - low) / count as f64)
-        };
         let stable = |mu: Complex<f64>| {
             is_schur(alpha.iter().zip(&beta).map(|(a, b)| Complex::from(*a) - mu * b).collect())
         };
-        let row = |y: f64| middles(real).map(|x| stable(Complex::new(x, y))).collect();
-        StabilityRegion { stable: middles(imaginary).map(row).collect(), real, imaginary, boundary }
+        let mut frame = window(&boundary);
+        // A region that is small beside its locus is looked at from nearer.
+        for _ in 0..3 {
+            match sampled(frame, 100, &stable).and_then(|cells| nearer(frame, &cells)) {
+                Some(near) => frame = near,
+                None => break,
+            }
+        }
+        let (real, imaginary) = frame;
+        let stable = sampled(frame, cells, &stable).unwrap_or_default();
+        StabilityRegion { stable, real, imaginary, boundary }
     }
 
     /// Returns what the closed loop at h makes of noise at `count` + 1 frequencies from 0 to pi.
@@ -185,8 +188,40 @@ fn boundary_locus(alpha: &[f64], beta: &[f64], count: usize) -> Vec<Complex<f64>
     grid(TAU, count).map(point).collect()
 }
 
+/// Real and imaginary part of what is looked at, from where to where.
+type Frame = ((f64, f64), (f64, f64));
+
+/// Whether the middles of the cells of a frame are stable, rows from the least imaginary part up; `None` for a frame
+/// without area.
+fn sampled((real, imaginary): Frame, cells: usize, stable: &dyn Fn(Complex<f64>) -> bool) -> Option<Vec<Vec<bool>>> {
+    let cell = f64::max(real.1 - real.0, imaginary.1 - imaginary.0) / cells.max(1) as f64;
+    let middles = |(low, high): (f64, f64)| {
+        let count = ((high - low) / cell).round().max(1.0) as usize;
+        (0..count).map(move |k| low + (k as f64 + 0.5) * (high - low) / count as f64)
+    };
+    let row = |y: f64| middles(real).map(|x| stable(Complex::new(x, y))).collect();
+    (cell > 0.0).then(|| middles(imaginary).map(row).collect())
+}
+
+/// A frame around the stable cells where they fill less than half of either side and touch no edge, else `None`.
+fn nearer((real, imaginary): Frame, cells: &[Vec<bool>]) -> Option<Frame> {
+    let columns = cells.first()?.len();
+    let rows_hit: Vec<usize> = (0..cells.len()).filter(|&i| cells[i].contains(&true)).collect();
+    let columns_hit: Vec<usize> = (0..columns).filter(|&j| cells.iter().any(|row| row[j])).collect();
+    let span = |hit: &[usize], count: usize, (low, high): (f64, f64)| {
+        let (first, last) = (*hit.first()?, *hit.last()?);
+        let at = |k: usize| low + (high - low) * k as f64 / count as f64;
+        let fills = 2 * (last + 1 - first) >= count;
+        (first > 0 && last + 1 < count).then(|| (at(first), at(last + 1), fills))
+    };
+    let (x, y) = (span(&columns_hit, columns, real)?, span(&rows_hit, cells.len(), imaginary)?);
+    let half = 0.75 * f64::max(x.1 - x.0, y.1 - y.0);
+    let around = |(low, high, _): (f64, f64, bool)| (f64::midpoint(low, high) - half, f64::midpoint(low, high) + half);
+    (!x.2 && !y.2).then(|| (around(x), around(y)))
+}
+
 /// A window that holds the locus, or the part of it near the origin where it goes to infinity, with a margin.
-fn window(boundary: &[Complex<f64>]) -> ((f64, f64), (f64, f64)) {
+fn window(boundary: &[Complex<f64>]) -> Frame {
     let mut moduli: Vec<f64> = boundary.iter().map(|mu| mu.norm()).filter(|m| m.is_finite()).collect();
     moduli.sort_by(f64::total_cmp);
     let median = moduli.get(moduli.len() / 2).copied().unwrap_or(1.0);

@@ -73,9 +73,9 @@ pub struct Duty {
 }
 
 impl Default for Duty {
-    /// Returns 63 steps per turn of the path, noise of a millionth, and recovery within 100 steps.
+    /// Returns 63 steps per turn of the path, noise of a millionth, and recovery within 10 steps.
     fn default() -> Self {
-        Self { turn: 0.1, noise: 1e-6, recovery: 100.0 }
+        Self { turn: 0.1, noise: 1e-6, recovery: 10.0 }
     }
 }
 
@@ -129,7 +129,7 @@ fn reason(formula: &Formula, merit: &Merit, alike: &[(&Formula, Merit)]) -> Stri
         return "the only row of its kind".to_owned();
     }
     let columns: [(&str, fn(&Merit) -> f64); 3] =
-        [("steady error", |m| m.steady), ("recovery", |m| m.recovery), ("noise", |m| m.noise)];
+        [("steady error", |m| m.steady), ("recovery time", |m| m.recovery), ("noise", |m| m.noise)];
     let mut leads = Vec::new();
     let mut behind = Vec::new();
     for (name, value) in columns {

@@ -79,7 +79,7 @@ impl FormulaPage {
     fn leaders(&mut self, table: &FormulaTable) {
         self.markdown.push_str(LEADERS);
         let mut by_order: BTreeMap<usize, Vec<&Formula>> = BTreeMap::new();
-        for formula in table.iter().filter(|formula| has_loop(formula)) {
+        for formula in table.iter().filter(|formula| has_loop(formula) && formula.is_explicit()) {
             by_order.entry(formula.order()).or_default().push(formula);
         }
         for (order, rows) in by_order {
@@ -266,7 +266,7 @@ is said beside it. The column *why* is computed, like all others.
 const LEADERS: &str = "
 ## Leaders
 
-Among zero-stable rows with a feedback range, implicit ones included: the best row of each order in each column, with its figure.
+Among explicit zero-stable rows with a feedback range: the best row of each order in each column, with its figure.
 
 | order | rows | widest range h_max | fastest decay r_opt | least \\|C\\| | least \\|C\\|/h_opt | least feedforward noise |
 |--:|--:|---|---|---|---|---|

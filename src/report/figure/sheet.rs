@@ -12,14 +12,14 @@ pub fn sheet(title: &str, figures: &[Figure], columns: usize) -> String {
     let width = |column: usize| {
         layouts.iter().skip(column).step_by(columns).map(|l| l.total_width).fold(0.0, f64::max)
     };
-    let lefts: Vec<f64> = (0..=columns).map(|column| (0..column).map(width).sum()).collect();
+    let lefts: Vec<f64> = (0..=columns).map(|column| (0..column).map(width).fold(0.0, |a, b| a + b)).collect();
     let heights: Vec<f64> =
         layouts.chunks(columns).map(|row| row.iter().map(|l| l.total_height).fold(0.0, f64::max)).collect();
     let mut svg = String::new();
     begin(&mut svg, lefts[columns], heights.iter().sum(), title);
     svg.push_str("<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>");
     for (i, (figure, layout)) in figures.iter().zip(&layouts).enumerate() {
-        let y: f64 = heights[..i / columns].iter().sum();
+        let y = heights[..i / columns].iter().fold(0.0, |a, b| a + b);
         let _ = write!(svg, r#"<g transform="translate({:.1} {y:.1})">"#, lefts[i % columns]);
         figure.draw(&mut svg, layout);
         svg.push_str("</g>");

@@ -141,7 +141,8 @@ struct Pen<'f> {
 impl Pen<'_> {
     /// A point on the page, kept within reach of it; `None` where it is not a number.
     fn at(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
-        const FAR: f64 = 1e4;
+        // In widths of the plot: dashes of lines that go on for ever would never be done.
+        const FAR: f64 = 3.0;
         let along = |axis: &Axis, value: f64| axis.place(value).clamp(-FAR, FAR);
         let (u, v) = (along(&self.figure.x, x), along(&self.figure.y, y));
         let Layout { left, top, width, height, .. } = self.layout;
@@ -246,14 +247,14 @@ impl Pen<'_> {
         );
     }
 
-    /// A text to the right of its point, or to the left where there is no room, with a white halo.
+    /// A text below its point, to the right or, where there is no room, to the left, with a white halo.
     fn label(&self, svg: &mut String, content: &str, at: (f64, f64)) {
         let Some((x, y)) = self.at(at) else { return };
-        let Layout { left, top, width, .. } = self.layout;
+        let Layout { left, top, width, height, .. } = self.layout;
         let fits = x + 9.0 + text_width(content, FONT_SIZE) < left + width;
         let (x, anchor) = if fits { (x + 9.0, "start") } else { (x - 9.0, "end") };
         let halo = r##" stroke="#ffffff" stroke-width="4" paint-order="stroke""##;
-        text(svg, (x, (y - 8.0).max(top + 14.0)), anchor, FONT_SIZE, halo, content);
+        text(svg, (x, (y + 20.0).min(top + height - 6.0)), anchor, FONT_SIZE, halo, content);
     }
 }
 
