@@ -26,7 +26,8 @@ fn whole_table(criterion: &mut Criterion) {
 /// Everything about one row of twenty steps: order, root condition, range, optimum, noise.
 fn long_row(criterion: &mut Criterion) {
     let alpha: Vec<String> = (0..=20).map(|j| ["1", "-1"].get(j).map_or("0", |a| a).to_owned()).collect();
-    let beta: Vec<String> = (0..=20).map(|j| if j == 0 { "0".to_owned() } else { format!("{}/210", 21 - j) }).collect();
+    let beta: Vec<String> =
+        (0..=20).map(|j| if j == 0 { "0".to_owned() } else { format!("{}/210", 21 - j) }).collect();
     let row = Row::from_weights("twenty", &alpha.join(","), &beta.join(","), None).expect("a readable row");
     let mut group = criterion.benchmark_group("formulas");
     group.sample_size(10);

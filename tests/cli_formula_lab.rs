@@ -48,7 +48,11 @@ fn a_list_is_sorted_best_first_with_gaps_at_the_end() {
 #[test]
 fn a_list_refuses_what_it_does_not_know() {
     let run = kinstep(&["formula", "list", "--family", "lookahead"]).expect(2);
-    assert!(run.err.contains("there is no family \"lookahead\"") && run.err.contains("look-ahead"), "{}", run.err);
+    assert!(
+        run.err.contains("there is no family \"lookahead\"") && run.err.contains("look-ahead"),
+        "{}",
+        run.err
+    );
     for steps in ["6-4", "x", "1-", "-3"] {
         kinstep(&["formula", "list", &format!("--steps={steps}")]).expect(2);
     }
@@ -57,7 +61,8 @@ fn a_list_refuses_what_it_does_not_know() {
 #[test]
 fn own_rows_are_filtered_like_built_in_ones() {
     let desk = Desk::new(&[("mine.toml", ROW)]);
-    let run = desk.run(&["formula", "list", "--formulas", "mine.toml", "--order", "3", "--steps", "5"]).expect(0);
+    let run =
+        desk.run(&["formula", "list", "--formulas", "mine.toml", "--order", "3", "--steps", "5"]).expect(0);
     assert!(run.out.lines().any(|line| line.starts_with("mine ")), "{}", run.out);
     let run = desk.run(&["formula", "list", "--formulas", "mine.toml", "--order", "4"]).expect(0);
     assert!(!run.out.lines().any(|line| line.starts_with("mine ")), "{}", run.out);
@@ -162,7 +167,8 @@ fn the_page_about_the_formulas_is_up_to_date() {
     let read = |path: std::path::PathBuf| std::fs::read_to_string(path).unwrap_or_default();
     assert!(read(desk.path("formulas.md")) == read(docs.join("formulas.md")), "run `{again}`");
     for name in desk.names("pictures") {
-        let (new, committed) = (read(desk.path("pictures").join(&name)), read(docs.join("pictures").join(&name)));
+        let (new, committed) =
+            (read(desk.path("pictures").join(&name)), read(docs.join("pictures").join(&name)));
         assert!(new == committed, "{name}: run `{again}`");
     }
 }

@@ -273,7 +273,9 @@ pub(super) struct FormulaList {
 /// Reads `5` or `4-6`.
 fn span(text: &str) -> Result<(usize, usize), String> {
     let number = |part: &str| {
-        part.trim().parse::<usize>().map_err(|_| format!("\"{part}\" is no number; give one, or a range such as 4-6"))
+        part.trim()
+            .parse::<usize>()
+            .map_err(|_| format!("\"{part}\" is no number; give one, or a range such as 4-6"))
     };
     let (low, high) = text.split_once('-').unwrap_or((text, text));
     let (low, high) = (number(low)?, number(high)?);
@@ -308,6 +310,7 @@ pub(super) struct FormulaDocs {
 }
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "they are switches of a command")]
 pub(super) struct FormulaShow {
     /// Ids of formulas
     #[arg(value_name = "ID")]

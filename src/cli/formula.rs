@@ -80,7 +80,7 @@ struct Written {
 
 impl Show for Written {
     fn text(&self) -> String {
-        self.written.iter().map(|name| format!("{name}\n")).collect()
+        self.written.join("\n") + "\n"
     }
 }
 
@@ -109,7 +109,7 @@ fn show_rows(arguments: &FormulaShow, own_rows: &[Row], output: &mut Output) -> 
 /// What is shown: a formula of the table, or a row of somebody's own.
 enum Shown {
     Builtin(&'static Formula),
-    Own(CheckedRow, bool),
+    Own(Box<CheckedRow>, bool),
 }
 
 impl Shown {
@@ -143,7 +143,8 @@ fn with_snippets(card: Card, shown: &Shown, arguments: &FormulaShow) -> Card {
         (arguments.python, "python", Snippet::Python),
     ];
     let asked = languages.into_iter().filter(|(asked, ..)| *asked);
-    let card = asked.fold(card, |card, (_, name, language)| card.with_snippet(name, language.of(id, analysis)));
+    let card =
+        asked.fold(card, |card, (_, name, language)| card.with_snippet(name, language.of(id, analysis)));
     if !arguments.bibtex {
         return card;
     }
@@ -159,7 +160,7 @@ fn shown(arguments: &FormulaShow, own_rows: &[Row]) -> Result<Vec<Shown>, Failur
     let mut shown = Vec::new();
     for id in &arguments.ids {
         shown.push(match own_rows.iter().find(|row| row.id() == id) {
-            Some(row) => Shown::Own(row.clone().check(), false),
+            Some(row) => Shown::Own(Box::new(row.clone().check()), false),
             None => match FormulaTable::builtin().get(id) {
                 Ok(formula) => Shown::Builtin(formula),
                 Err(unknown) => return Err(Failure::usage(unknown.to_string())),
@@ -169,7 +170,7 @@ fn shown(arguments: &FormulaShow, own_rows: &[Row]) -> Result<Vec<Shown>, Failur
     if let Some(row) =
         typed_row(arguments).transpose().map_err(|kind| Failure::new(Exit::Formula, kind.to_string()))?
     {
-        shown.push(Shown::Own(row.check(), true));
+        shown.push(Shown::Own(Box::new(row.check()), true));
     }
     if shown.is_empty() {
         let ways = "name rows to show, or type one: --difference 24,-5,-12,-6,-4,3 --denominator 48, \

@@ -322,7 +322,11 @@ impl Card {
 
     /// What is printed: the card, or the languages that were asked for.
     fn printed(&self) -> String {
-        if self.snippets.is_empty() { self.text() } else { self.snippets.values().cloned().collect::<Vec<_>>().join("\n") }
+        if self.snippets.is_empty() {
+            self.text()
+        } else {
+            self.snippets.values().cloned().collect::<Vec<_>>().join("\n")
+        }
     }
 }
 

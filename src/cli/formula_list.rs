@@ -37,7 +37,8 @@ impl FormulaList {
             .map(|formula| Facts::new(formula.row(), formula.analysis(), true));
         let own = own_rows.into_iter().map(Row::check).filter_map(|checked| {
             let analysis = checked.analysis();
-            let wanted = is_wanted(checked.row(), analysis.steps(), analysis.order(), analysis.is_zero_stable());
+            let wanted =
+                is_wanted(checked.row(), analysis.steps(), analysis.order(), analysis.is_zero_stable());
             wanted.then(|| Facts::new(checked.row(), analysis, checked.contradictions().is_empty()))
         });
         let mut formulas: Vec<Facts> = builtin.chain(own).collect();
@@ -62,9 +63,10 @@ fn check_families(table: &FormulaTable, own_rows: &[Row], wanted: &[String]) -> 
         }
     }
     match wanted.iter().find(|name| !known.contains(&name.as_str())) {
-        Some(name) => {
-            Err(Failure::usage(format!("there is no family \"{name}\"; the families are {}", known.join(", "))))
-        }
+        Some(name) => Err(Failure::usage(format!(
+            "there is no family \"{name}\"; the families are {}",
+            known.join(", ")
+        ))),
         None => Ok(()),
     }
 }
@@ -149,7 +151,8 @@ impl Recommended {
     /// Returns the recommendations of a table among the formulas wanted.
     pub(super) fn new(table: &FormulaTable, wanted: &Wanted) -> Result<Self, Failure> {
         check_families(table, &[], &wanted.family)?;
-        let inside = |span: Option<(usize, usize)>, n| span.is_none_or(|(low, high)| (low..=high).contains(&n));
+        let inside =
+            |span: Option<(usize, usize)>, n| span.is_none_or(|(low, high)| (low..=high).contains(&n));
         let of_family = table.of_families(&wanted.family);
         let lines = of_family.recommended();
         let recommended = lines
@@ -219,7 +222,8 @@ impl RuleList {
             weights: rule.weights().iter().map(ToString::to_string).collect(),
             source: rule.source().to_owned(),
         };
-        let wanted = |rule: &&DerivativeRule| order.is_none_or(|(low, high)| (low..=high).contains(&rule.order()));
+        let wanted =
+            |rule: &&DerivativeRule| order.is_none_or(|(low, high)| (low..=high).contains(&rule.order()));
         Self { derivative_rules: DerivativeRule::builtin().iter().filter(wanted).map(line).collect() }
     }
 }

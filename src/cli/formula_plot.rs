@@ -14,7 +14,9 @@ const MOST_DRAWN: usize = 40;
 pub(super) fn plot(path: &Path, force: bool, rows: &[(&str, &Analysis)]) -> Result<Vec<String>, Failure> {
     if let Some((id, analysis)) = rows.iter().find(|(_, analysis)| analysis.steps() > MOST_DRAWN) {
         let steps = analysis.steps();
-        return Err(Failure::usage(format!("{id} has {steps} steps; figures are drawn of up to {MOST_DRAWN}")));
+        return Err(Failure::usage(format!(
+            "{id} has {steps} steps; figures are drawn of up to {MOST_DRAWN}"
+        )));
     }
     let figures: Vec<Figure> = rows.iter().flat_map(|(id, analysis)| portrait(id, analysis)).collect();
     let is_page = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
@@ -45,21 +47,26 @@ fn page(
     };
     let ids: Vec<&str> = rows.iter().map(|(id, _)| *id).collect();
     // One table of numbers for the page: the name of the figure goes before each line.
-    let numbers: String = figures
-        .iter()
-        .map(|figure| figure.to_csv().lines().map(|line| format!("{},{line}\n", figure.name)).collect::<String>())
-        .collect();
+    let line = |name: &str, line: &str| format!("{name},{line}\n");
+    let lines = |figure: &Figure| -> Vec<String> {
+        figure.to_csv().lines().map(|text| line(&figure.name, text)).collect()
+    };
+    let numbers = figures.iter().flat_map(lines).collect::<Vec<_>>().concat();
     let csv = Path::new(&name).with_extension("csv").to_string_lossy().into_owned();
     write_all(beside, force, &[(name, sheet(&ids.join(", "), figures, 2)), (csv, numbers)])
 }
 
 /// Writes files of a folder, and returns their paths.
-pub(super) fn write_all(path: &Path, force: bool, files: &[(String, String)]) -> Result<Vec<String>, Failure> {
+pub(super) fn write_all(
+    path: &Path,
+    force: bool,
+    files: &[(String, String)],
+) -> Result<Vec<String>, Failure> {
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     let mut repeated = names.clone();
     repeated.sort_unstable();
-    if let Some(pair) = repeated.windows(2).find(|pair| pair[0] == pair[1]) {
-        let message = format!("{} would be written twice; name each formula once", pair[0]);
+    if let Some([name, ..]) = repeated.windows(2).find(|pair| pair[0] == pair[1]) {
+        let message = format!("{name} would be written twice; name each formula once");
         return Err(Failure::new(Exit::Usage, message));
     }
     let folder = Folder::open(path, force, &names)?;

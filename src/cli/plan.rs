@@ -54,7 +54,10 @@ pub(super) fn run(
         let chosen = if names_formula {
             String::new()
         } else {
-            format!("The scenario names no formula: {} does best in general (kinstep formula list --recommended).\n", plan.formula)
+            format!(
+                "The scenario names no formula: {} does best in general (kinstep formula list --recommended).\n",
+                plan.formula
+            )
         };
         output.text(&format!(
             "{head}{chosen}{}{}",

@@ -11,7 +11,9 @@ const REFERENCES: &str = include_str!("../../docs/references.bib");
 /// ```
 pub fn bibtex(source: &str) -> Option<&'static str> {
     let key = source.split_whitespace().next()?;
-    let begins = |at: usize| REFERENCES[at..].split_once('{').is_some_and(|(_, rest)| rest.starts_with(&format!("{key},")));
+    let begins = |at: usize| {
+        REFERENCES[at..].split_once('{').is_some_and(|(_, rest)| rest.starts_with(&format!("{key},")))
+    };
     let start = REFERENCES.match_indices('@').map(|(at, _)| at).find(|at| begins(*at))?;
     let mut depth = 0;
     for (offset, c) in REFERENCES[start..].char_indices() {

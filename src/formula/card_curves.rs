@@ -92,7 +92,8 @@ impl Analysis {
     fn loop_roots(&self, h: f64) -> Vec<Complex<f64>> {
         let Some(closed_loop) = self.closed_loop() else { return Vec::new() };
         let coefficient = |k: usize| {
-            let part = |p: &crate::math::Polynomial| rational_to_f64(&Rational::from_integer(p.coefficient(k)));
+            let part =
+                |p: &crate::math::Polynomial| rational_to_f64(&Rational::from_integer(p.coefficient(k)));
             part(closed_loop.rho()) + h * part(closed_loop.gamma())
         };
         float_roots((0..=closed_loop.degree()).rev().map(coefficient).collect())
@@ -117,7 +118,7 @@ impl Analysis {
         }
         let (real, imaginary) = frame;
         let stable = sampled(frame, cells, &stable).unwrap_or_default();
-        StabilityRegion { stable, real, imaginary, boundary }
+        StabilityRegion { real, imaginary, stable, boundary }
     }
 
     /// Returns what the closed loop at h makes of noise at `count` + 1 frequencies from 0 to pi.
@@ -157,7 +158,9 @@ fn float_roots(mut descending: Vec<f64>) -> Vec<Complex<f64>> {
         roots.push(Complex::from(0.0));
     }
     let Some(lead) = descending.first().copied().filter(|lead| *lead != 0.0) else { return Vec::new() };
-    descending.iter_mut().for_each(|c| *c /= lead);
+    for c in &mut descending {
+        *c /= lead;
+    }
     let mut moving = starting_points(&descending);
     polish(&descending, &mut moving, 80);
     roots.extend(moving.iter().map(|z| Complex::new(z.re, z.im)));
@@ -193,7 +196,11 @@ type Frame = ((f64, f64), (f64, f64));
 
 /// Whether the middles of the cells of a frame are stable, rows from the least imaginary part up; `None` for a frame
 /// without area.
-fn sampled((real, imaginary): Frame, cells: usize, stable: &dyn Fn(Complex<f64>) -> bool) -> Option<Vec<Vec<bool>>> {
+fn sampled(
+    (real, imaginary): Frame,
+    cells: usize,
+    stable: &dyn Fn(Complex<f64>) -> bool,
+) -> Option<Vec<Vec<bool>>> {
     let cell = f64::max(real.1 - real.0, imaginary.1 - imaginary.0) / cells.max(1) as f64;
     let middles = |(low, high): (f64, f64)| {
         let count = ((high - low) / cell).round().max(1.0) as usize;
@@ -216,7 +223,8 @@ fn nearer((real, imaginary): Frame, cells: &[Vec<bool>]) -> Option<Frame> {
     };
     let (x, y) = (span(&columns_hit, columns, real)?, span(&rows_hit, cells.len(), imaginary)?);
     let half = 0.75 * f64::max(x.1 - x.0, y.1 - y.0);
-    let around = |(low, high, _): (f64, f64, bool)| (f64::midpoint(low, high) - half, f64::midpoint(low, high) + half);
+    let around =
+        |(low, high, _): (f64, f64, bool)| (f64::midpoint(low, high) - half, f64::midpoint(low, high) + half);
     (!x.2 && !y.2).then(|| (around(x), around(y)))
 }
 
@@ -235,7 +243,7 @@ fn window(boundary: &[Complex<f64>]) -> Frame {
     // The negative half-plane is what asks to be seen, and nothing is drawn thinner than a third of its length.
     let least = 0.35 * f64::max(real.1 - real.0, imaginary.1 - imaginary.0).max(0.1);
     let widened = |(low, high): (f64, f64)| {
-        let (middle, half) = ((low + high) / 2.0, f64::max(high - low, least) / 2.0 * 1.12);
+        let (middle, half) = (f64::midpoint(low, high), f64::max(high - low, least) / 2.0 * 1.12);
         (middle - half, middle + half)
     };
     (widened((real.0.min(-0.3 * least), real.1)), widened(imaginary))
@@ -274,7 +282,9 @@ mod tests {
         let (rows, columns) = (region.stable.len(), region.stable[0].len());
         for (i, row) in region.stable.iter().enumerate() {
             for (j, &stable) in row.iter().enumerate() {
-                let part = |(low, high): (f64, f64), k: usize, n: usize| low + (k as f64 + 0.5) * (high - low) / n as f64;
+                let part = |(low, high): (f64, f64), k: usize, n: usize| {
+                    low + (k as f64 + 0.5) * (high - low) / n as f64
+                };
                 let mu = Complex::new(part(region.real, j, columns), part(region.imaginary, i, rows));
                 assert_eq!(stable, (mu + 1.0).norm() < 1.0, "{mu}");
             }
@@ -288,12 +298,15 @@ mod tests {
             let gain = analysis(id).noise_gain(h).expect("a stable loop");
             let response = analysis(id).frequency_response(h, 4096);
             let mean = |of: fn(&crate::formula::FrequencyResponse) -> f64| {
-                let ends = (of(&response[0]).powi(2) + of(&response[4096]).powi(2)) / 2.0;
+                let ends = f64::midpoint(of(&response[0]).powi(2), of(&response[4096]).powi(2));
                 let inner: f64 = response[1..4096].iter().map(|r| of(r).powi(2)).sum();
                 ((ends + inner) / 4096.0).sqrt()
             };
             assert!((mean(|r| r.residual) - gain.residual).abs() < 1e-9 * gain.residual);
-            assert!((mean(|r| r.feedforward_per_sigma) - gain.feedforward_per_sigma).abs() < 1e-9 * gain.feedforward_per_sigma);
+            assert!(
+                (mean(|r| r.feedforward_per_sigma) - gain.feedforward_per_sigma).abs()
+                    < 1e-9 * gain.feedforward_per_sigma
+            );
             assert!((mean(|r| r.state) - gain.state).abs() < 1e-9 * gain.state.max(1e-3), "{id}");
         }
     }

@@ -67,8 +67,12 @@ fn latex_sample(letter: &str, j: usize) -> String {
 }
 
 fn recursion_in(analysis: &Analysis, notation: &Notation) -> String {
-    let past: Vec<Rational> =
-        analysis.alpha().iter().enumerate().map(|(j, a)| if j == 0 { Rational::zero() } else { -a }).collect();
+    let past: Vec<Rational> = analysis
+        .alpha()
+        .iter()
+        .enumerate()
+        .map(|(j, a)| if j == 0 { Rational::zero() } else { -a })
+        .collect();
     let mut text = format!("{} = {}", (notation.sample)("x", 0), sum(&past, "x", notation));
     let slopes = [(analysis.beta(), "f"), (analysis.gamma(), "g")];
     for (weights, letter) in slopes.into_iter().take(if analysis.is_split() { 2 } else { 1 }) {
@@ -96,8 +100,11 @@ fn sum(weights: &[Rational], letter: &str, notation: &Notation) -> String {
             (false, false) => " + ",
         };
         let size = c.abs();
-        let factor =
-            if size.is_one() { String::new() } else { format!("{}{}", (notation.fraction)(&size), notation.gap) };
+        let factor = if size.is_one() {
+            String::new()
+        } else {
+            format!("{}{}", (notation.fraction)(&size), notation.gap)
+        };
         let _ = write!(text, "{sign}{factor}{}", (notation.sample)(letter, j));
     }
     if text.is_empty() { "0".to_owned() } else { text }
@@ -111,8 +118,7 @@ struct Language {
     prologue: &'static str,
 }
 
-const RUST: Language =
-    Language { comment: "//", list: rust_list, function: rust_function, prologue: "" };
+const RUST: Language = Language { comment: "//", list: rust_list, function: rust_function, prologue: "" };
 const PYTHON: Language = Language {
     comment: "#",
     list: python_list,
@@ -189,7 +195,10 @@ mod tests {
         );
         assert_eq!(recursion(of("ab2")), "x_n+1 = x_n + sigma (3/2 f_n - 1/2 f_n-1)");
         assert_eq!(recursion(of("split-ab2")), "x_n+1 = x_n + sigma (3/2 f_n - 1/2 f_n-1) + sigma g_n");
-        assert!(latex(of("ab2")).contains("x_{n+1} = x_{n} + \\sigma (\\frac{3}{2} f_{n} - \\frac{1}{2} f_{n-1})"));
+        assert!(
+            latex(of("ab2"))
+                .contains("x_{n+1} = x_{n} + \\sigma (\\frac{3}{2} f_{n} - \\frac{1}{2} f_{n-1})")
+        );
     }
 
     /// The snippet as it was written down; a build that compiles this test compiles the snippet too.

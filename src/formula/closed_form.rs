@@ -83,7 +83,8 @@ pub(crate) fn closed_form(
     let elimination = Elimination::new(&moving);
     CAUSES.into_iter().find_map(|cause| {
         let h = eliminated(elimination.for_h(cause), optimum.h)?;
-        let squared = (floor < optimum.radius).then(|| eliminated(elimination.for_radius(cause), target)).flatten();
+        let squared =
+            (floor < optimum.radius).then(|| eliminated(elimination.for_radius(cause), target)).flatten();
         Some(ClosedForm {
             h: AlgebraicNumber::of_root(h),
             radius_squared: squared.map(AlgebraicNumber::of_root),
@@ -93,13 +94,8 @@ pub(crate) fn closed_form(
 }
 
 /// What is looked for, the cheapest elimination first.
-const CAUSES: [Cause; 5] = [
-    Cause::DoubleRoot,
-    Cause::OppositeRoots,
-    Cause::StationaryPair,
-    Cause::RealRootAndPair,
-    Cause::TwoPairs,
-];
+const CAUSES: [Cause; 5] =
+    [Cause::DoubleRoot, Cause::OppositeRoots, Cause::StationaryPair, Cause::RealRootAndPair, Cause::TwoPairs];
 
 /// The one root of the resultant beside a numeric value; the unknown y is eliminated.
 fn eliminated((p, q): (Bivariate, Bivariate), near: f64) -> Option<RealRoot> {

@@ -54,7 +54,8 @@ impl DerivativeRule {
     /// Never in a build whose tests have passed: they read this table.
     pub fn builtin() -> &'static [Self] {
         static RULES: LazyLock<Vec<DerivativeRule>> = LazyLock::new(|| {
-            read(BUILTIN).unwrap_or_else(|error| panic!("the built-in derivative rules are at fault: {error}"))
+            read(BUILTIN)
+                .unwrap_or_else(|error| panic!("the built-in derivative rules are at fault: {error}"))
         });
         &RULES
     }
@@ -110,7 +111,7 @@ impl DerivativeRule {
 
 /// sum_j a_j (-j)^m, which is 1 for m = 1 and 0 for the other m up to the order.
 fn moment(weights: &[Rational], m: usize) -> Rational {
-    let power = |j: usize| num_traits::pow(Rational::from_integer((-(j as i64)).into()), m);
+    let power = |j: usize| num_traits::pow(-Rational::from_integer(j.into()), m);
     weights.iter().enumerate().map(|(j, a)| a * power(j)).sum()
 }
 
@@ -154,12 +155,19 @@ mod tests {
     #[test]
     fn backward_differences_have_the_constants_of_the_textbook() {
         // c = -1/(q+1) for the backward difference of order q.
-        for (rule, q) in DerivativeRule::builtin().iter().zip(1_i64..) {
-            assert_eq!(rule.order() as i64, q);
+        for (rule, q) in DerivativeRule::builtin().iter().zip(1_usize..) {
+            assert_eq!(rule.order(), q);
             assert_eq!(*rule.error_constant(), Rational::new((-1).into(), (q + 1).into()));
         }
         let gains: Vec<f64> = DerivativeRule::builtin().iter().map(DerivativeRule::noise_gain).collect();
-        let known = [1.414_213_562_373, 2.549_509_756_796, 3.836_954_811_074, 5.583_955_189_25, 8.241_797_268_935, 12.578_840_257_441];
+        let known = [
+            std::f64::consts::SQRT_2,
+            2.549_509_756_796,
+            3.836_954_811_074,
+            5.583_955_189_25,
+            8.241_797_268_935,
+            12.578_840_257_441,
+        ];
         assert!(gains.iter().zip(known).all(|(a, b)| (a - b).abs() < 1e-11), "{gains:?}");
     }
 
@@ -171,7 +179,11 @@ mod tests {
                     .weights()
                     .iter()
                     .enumerate()
-                    .map(|(j, a)| a * Rational::from_integer((7 - j as i64).pow(power).into()))
+                    .map(|(j, a)| {
+                        a * Rational::from_integer(
+                            (7 - i64::try_from(j).expect("few weights")).pow(power).into(),
+                        )
+                    })
                     .sum();
                 let slope = if power == 0 { 0 } else { i64::from(power) * 7_i64.pow(power - 1) };
                 assert_eq!(sampled, Rational::from_integer(slope.into()), "{} {power}", rule.id());

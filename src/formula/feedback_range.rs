@@ -7,8 +7,8 @@ use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
 use crate::math::{
-    Polynomial, Rational, RealRoot, common_denominator, half_plane_image, interpolate, is_schur, last_hurwitz_determinant,
-    positive_roots, rational_from_f64, rational_roots, rational_to_f64,
+    Polynomial, Rational, RealRoot, common_denominator, half_plane_image, interpolate, is_schur,
+    last_hurwitz_determinant, positive_roots, rational_from_f64, rational_roots, rational_to_f64,
 };
 
 /// The closed loop of a row: pi_h(z) = rho(z) + h gamma(z)/gamma(1), as an exact polynomial for every exact h.

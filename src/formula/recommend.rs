@@ -83,7 +83,7 @@ impl Duty {
     /// Returns the residual to be expected of a row of this order and merit, relative to the path's amplitude:
     /// sqrt((C/h turn^(p+1))^2 + noise^2 (residual^2 + (feedforward turn)^2)).
     pub fn residual(&self, order: usize, merit: &Merit) -> f64 {
-        let truncation = merit.steady * self.turn.powi(order as i32 + 1);
+        let truncation = merit.steady * self.turn.powf(order as f64 + 1.0);
         let noise = self.noise * merit.residual_noise.hypot(merit.noise * self.turn);
         truncation.hypot(noise)
     }
@@ -123,22 +123,31 @@ fn recommendation<'t>(
     Some(Recommendation { steps, order, formula, merit, compared: alike.len(), why })
 }
 
+/// A figure of the merit.
+type Column = fn(&Merit) -> f64;
+
 /// Which columns the row leads, and who leads the others.
 fn reason(formula: &Formula, merit: &Merit, alike: &[(&Formula, Merit)]) -> String {
     if alike.len() == 1 {
         return "the only row of its kind".to_owned();
     }
-    let columns: [(&str, fn(&Merit) -> f64); 3] =
+    let columns: [(&str, Column); 3] =
         [("steady error", |m| m.steady), ("recovery time", |m| m.recovery), ("noise", |m| m.noise)];
     let mut leads = Vec::new();
     let mut behind = Vec::new();
     for (name, value) in columns {
-        let Some(best) = alike.iter().min_by(|(_, a), (_, b)| value(a).total_cmp(&value(b))) else { continue };
+        let Some(best) = alike.iter().min_by(|(_, a), (_, b)| value(a).total_cmp(&value(b))) else {
+            continue;
+        };
         let more = value(merit) / value(&best.1) - 1.0;
         if best.0.id() == formula.id() || !(more > 5e-3) {
             leads.push(name);
         } else {
-            behind.push(format!("{} has {:.0} % less {name}", best.0.id(), 100.0 * (1.0 - 1.0 / (1.0 + more))));
+            behind.push(format!(
+                "{} has {:.0} % less {name}",
+                best.0.id(),
+                100.0 * (1.0 - 1.0 / (1.0 + more))
+            ));
         }
     }
     let product = format!("least product of {}", alike.len());
@@ -177,7 +186,8 @@ mod tests {
     #[test]
     fn rough_paths_and_noise_ask_for_other_rows() {
         let table = FormulaTable::builtin();
-        let of = |turn, noise| table.best_for(&Duty { turn, noise, recovery: 100.0 }).expect("there is one").0;
+        let of =
+            |turn, noise| table.best_for(&Duty { turn, noise, recovery: 100.0 }).expect("there is one").0;
         let (smooth, noisy) = (of(0.02, 1e-12), of(0.02, 1e-2));
         assert!(smooth.order() > noisy.order(), "{} {}", smooth.id(), noisy.id());
         assert!(table.best_for(&Duty { recovery: 0.0, ..Duty::default() }).is_none());

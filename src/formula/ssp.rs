@@ -44,7 +44,8 @@ mod tests {
 
     #[test]
     fn no_look_ahead_row_of_order_three_has_one() {
-        let rows = FormulaTable::builtin().iter().filter(|row| row.family() == "look-ahead" && row.order() >= 3);
+        let rows =
+            FormulaTable::builtin().iter().filter(|row| row.family() == "look-ahead" && row.order() >= 3);
         rows.for_each(|row| assert_eq!(row.analysis().ssp_coefficient(), None, "{}", row.id()));
     }
 }

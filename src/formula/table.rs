@@ -113,6 +113,7 @@ impl FormulaTable {
     }
 
     /// Returns the formulas of these families, in the order of this table; all of them for no family.
+    #[must_use]
     pub fn of_families<S: AsRef<str>>(&self, families: &[S]) -> Self {
         let is_wanted = |formula: &&Formula| {
             families.is_empty() || families.iter().any(|name| name.as_ref() == formula.family())

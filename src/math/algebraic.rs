@@ -162,7 +162,7 @@ impl Surd {
     /// Returns the nearest double, worked out in integers.
     pub fn to_f64(&self) -> f64 {
         let bits = 200_u32;
-        let root = (&self.coefficient * &self.coefficient * &self.radicand << (2 * bits)).sqrt();
+        let root = ((&self.coefficient * &self.coefficient * &self.radicand) << (2 * bits)).sqrt();
         let root = if self.coefficient.is_negative() { -root } else { root };
         let numerator = (&self.rational << bits) + root;
         Rational::new(numerator, &self.denominator << bits).to_f64().unwrap_or(f64::NAN)
@@ -171,7 +171,8 @@ impl Surd {
     /// The two terms of the numerator with their signs, positive first.
     fn terms(&self, root: &str) -> String {
         let magnitude = self.coefficient.abs();
-        let root = if magnitude.is_one() { root.trim_start().to_owned() } else { format!("{magnitude}{root}") };
+        let root =
+            if magnitude.is_one() { root.trim_start().to_owned() } else { format!("{magnitude}{root}") };
         match (self.rational.is_zero(), self.rational.is_negative(), self.coefficient.is_negative()) {
             (true, _, false) => root,
             (true, _, true) => format!("-{root}"),
@@ -191,7 +192,11 @@ impl Surd {
 impl fmt::Display for Surd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let terms = self.terms(&format!(" sqrt {}", self.radicand));
-        if self.denominator.is_one() { f.write_str(&terms) } else { write!(f, "({terms})/{}", self.denominator) }
+        if self.denominator.is_one() {
+            f.write_str(&terms)
+        } else {
+            write!(f, "({terms})/{}", self.denominator)
+        }
     }
 }
 

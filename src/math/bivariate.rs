@@ -25,8 +25,7 @@ impl Bivariate {
 
     /// Returns the same polynomial with the unknowns exchanged.
     pub(crate) fn exchanged(&self) -> Self {
-        let of_power =
-            |power| Polynomial::from_ascending(self.in_y.iter().map(|p| p.coefficient(power)));
+        let of_power = |power| Polynomial::from_ascending(self.in_y.iter().map(|p| p.coefficient(power)));
         Self::new((0..=self.degree_x()).map(of_power).collect())
     }
 
@@ -106,7 +105,7 @@ fn sylvester(a: &[BigInt], b: &[BigInt]) -> Vec<Vec<BigInt>> {
     let shifted = |list: &[BigInt], shift: usize| {
         let mut row = vec![BigInt::zero(); m + n];
         for (k, c) in list.iter().rev().enumerate() {
-            row[shift + k] = c.clone();
+            row[shift + k].clone_from(c);
         }
         row
     };

@@ -33,9 +33,9 @@ pub use rotation::rotation_vector;
 pub use routh::{is_schur, is_schur_within};
 pub use singular::SingularValues;
 
-pub(crate) use complex_roots::{Complex, Real, polish, starting_points};
 pub(crate) use algebraic::latex_fraction;
 pub(crate) use bivariate::{Bivariate, resultant, resultant_cost};
+pub(crate) use complex_roots::{Complex, Real, polish, starting_points};
 pub(crate) use double_double::DoubleDouble;
 pub(crate) use figure::figure;
 pub(crate) use interpolation::interpolate;

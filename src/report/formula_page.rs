@@ -49,7 +49,8 @@ impl FormulaPage {
         for r in table.recommended() {
             let m = &r.merit;
             let radius = r.formula.optimum().map_or_else(String::new, |optimum| short(optimum.radius));
-            let figures = [short(m.h), radius, short(m.steady), format!("{:.0}", m.recovery.ceil()), short(m.noise)];
+            let figures =
+                [short(m.h), radius, short(m.steady), format!("{:.0}", m.recovery.ceil()), short(m.noise)];
             let _ = writeln!(
                 text,
                 "| {} | {} | `{}` | {} | {} |",
@@ -108,15 +109,16 @@ impl FormulaPage {
         kinds.sort_unstable();
         kinds.dedup();
         for (steps, order) in kinds {
-            let rows: Vec<&Formula> =
-                table.iter().filter(|row| has_loop(row) && (row.steps(), row.order()) == (steps, order)).collect();
+            let rows: Vec<&Formula> = table
+                .iter()
+                .filter(|row| has_loop(row) && (row.steps(), row.order()) == (steps, order))
+                .collect();
             if rows.len() < 2 {
                 continue;
             }
             let front = pareto_front(&rows);
             let names: Vec<String> = front.iter().map(|row| format!("`{}`", row.id())).collect();
-            let _ =
-                writeln!(self.markdown, "| {steps} | {order} | {} | {} |", rows.len(), names.join(", "));
+            let _ = writeln!(self.markdown, "| {steps} | {order} | {} | {} |", rows.len(), names.join(", "));
             if (steps, order) == DRAWN {
                 let figure = pareto_figure(steps, order, &rows, &front);
                 self.pictures.push((format!("{}.svg", figure.name), figure.to_svg()));
@@ -312,7 +314,12 @@ mod tests {
         for row in &rows {
             let beaten = !front.iter().any(|leader| leader.id() == row.id());
             let twice: Vec<&Formula> = front.iter().copied().chain([*row]).collect();
-            assert_eq!(beaten, pareto_front(&twice).iter().all(|leader| leader.id() != row.id()), "{}", row.id());
+            assert_eq!(
+                beaten,
+                pareto_front(&twice).iter().all(|leader| leader.id() != row.id()),
+                "{}",
+                row.id()
+            );
         }
     }
 }

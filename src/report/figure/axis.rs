@@ -73,7 +73,8 @@ fn linear_ticks((low, high): (f64, f64)) -> Vec<Tick> {
     const WANTED: f64 = 6.0;
     let rough = (high - low) / WANTED;
     let power = rough.log10().floor();
-    let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * 10_f64.powf(power)).into_iter().find(|s| *s >= rough * 0.999);
+    let step =
+        [1.0, 2.0, 5.0, 10.0].map(|m| m * 10_f64.powf(power)).into_iter().find(|s| *s >= rough * 0.999);
     let step = step.unwrap_or(rough);
     let decimals = (-step.log10().floor()).max(0.0) as usize;
     let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
@@ -145,7 +146,10 @@ mod tests {
 
     fn labels(scale: Scale, range: (f64, f64)) -> Vec<String> {
         let axis = Axis::new("x", "x", scale, range);
-        axis.ticks().into_iter().map(|t| t.label.0 + &t.label.1.map_or_else(String::new, |e| "^".to_owned() + &e)).collect()
+        axis.ticks()
+            .into_iter()
+            .map(|t| t.label.0 + &t.label.1.map_or_else(String::new, |e| "^".to_owned() + &e))
+            .collect()
     }
 
     #[test]

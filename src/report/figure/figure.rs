@@ -70,9 +70,9 @@ pub enum Mark {
 impl Mark {
     pub(super) fn legend(&self) -> Option<(&str, usize)> {
         match self {
-            Self::Line { name, style, .. } | Self::Points { name, style, .. } | Self::Region { name, style, .. } => {
-                Some((name, *style))
-            }
+            Self::Line { name, style, .. }
+            | Self::Points { name, style, .. }
+            | Self::Region { name, style, .. } => Some((name, *style)),
             Self::Guide { .. } | Self::Label { .. } => None,
         }
     }
@@ -115,7 +115,9 @@ impl Figure {
                     }
                 }
                 Mark::Points { name, points, .. } => {
-                    points.iter().for_each(|point| self.csv_line(&mut text, name, *point, None));
+                    for point in points {
+                        self.csv_line(&mut text, name, *point, None);
+                    }
                 }
                 Mark::Region { name, strips, .. } => {
                     for [left, right, lower, upper] in strips {
@@ -131,8 +133,11 @@ impl Figure {
     }
 
     fn csv_line(&self, text: &mut String, name: &str, (x, y): (f64, f64), parameter: Option<&f64>) {
-        let quoted =
-            if name.contains([',', '"']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() };
+        let quoted = if name.contains([',', '"']) {
+            format!("\"{}\"", name.replace('"', "\"\""))
+        } else {
+            name.to_owned()
+        };
         let _ = write!(text, "{quoted},{},{}", number(x), number(y));
         if self.parameter.is_some() {
             let _ = write!(text, ",{}", parameter.map_or_else(String::new, |value| number(*value)));
@@ -168,7 +173,12 @@ mod tests {
                     parameter: vec![1.0, 2.0, 3.0],
                     style: 0,
                 },
-                Mark::Points { name: "p".to_owned(), points: vec![(0.25, -0.0)], shape: Shape::Disk, style: 1 },
+                Mark::Points {
+                    name: "p".to_owned(),
+                    points: vec![(0.25, -0.0)],
+                    shape: Shape::Disk,
+                    style: 1,
+                },
                 Mark::Guide { points: vec![(0.0, 1.0), (1.0, 1.0)] },
             ],
         }

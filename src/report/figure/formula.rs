@@ -75,7 +75,8 @@ pub fn locus_figure(id: &str, analysis: &Analysis) -> Figure {
         });
     }
     let at = |h: f64| -> Vec<(f64, f64)> {
-        let nearest = (0..locus.h.len()).min_by(|&i, &j| (locus.h[i] - h).abs().total_cmp(&(locus.h[j] - h).abs()));
+        let nearest =
+            (0..locus.h.len()).min_by(|&i, &j| (locus.h[i] - h).abs().total_cmp(&(locus.h[j] - h).abs()));
         nearest.map_or_else(Vec::new, |i| locus.branches.iter().map(|b| (b[i].re, b[i].im)).collect())
     };
     let points = |name: String, h: f64, shape, style| Mark::Points { name, points: at(h), shape, style };
@@ -83,7 +84,8 @@ pub fn locus_figure(id: &str, analysis: &Analysis) -> Figure {
     if let Some(optimum) = analysis.optimum() {
         marks.push(points(format!("h_opt = {:.4}", optimum.h), optimum.h, Shape::Disk, 2));
     }
-    if let Some(range) = analysis.feedback_range().filter(|range| !range.is_empty() && !range.is_unbounded()) {
+    if let Some(range) = analysis.feedback_range().filter(|range| !range.is_empty() && !range.is_unbounded())
+    {
         marks.push(points(format!("h_max = {:.4}", range.value()), range.value(), Shape::Cross, 1));
     }
     let reach = locus.branches.iter().flatten().map(|z| z.norm()).fold(1.0, f64::max).min(1.6);
@@ -115,7 +117,12 @@ pub fn radius_figure(rows: &[(&str, &Analysis)]) -> Figure {
         let bounded = |range: &&crate::formula::FeedbackRange| !range.is_empty() && !range.is_unbounded();
         if let Some(range) = analysis.feedback_range().filter(bounded) {
             let points = vec![(range.value(), 1.0)];
-            marks.push(Mark::Points { name: "end of the range".to_owned(), points, shape: Shape::Cross, style });
+            marks.push(Mark::Points {
+                name: "end of the range".to_owned(),
+                points,
+                shape: Shape::Cross,
+                style,
+            });
         }
     }
     let names = rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
@@ -177,9 +184,12 @@ fn strips(real: (f64, f64), imaginary: (f64, f64), stable: &[Vec<bool>]) -> Vec<
     strips
 }
 
+/// One of the gains.
+type Gain = fn(&FrequencyResponse) -> f64;
+
 /// Returns how the closed loop at h_opt passes noise on, over the frequency; `None` where no row has an optimum.
 pub fn frequency_figure(rows: &[(&str, &Analysis)]) -> Option<Figure> {
-    let places: [(&str, fn(&FrequencyResponse) -> f64); 3] = [
+    let places: [(&str, Gain); 3] = [
         ("residual", |r| r.residual),
         ("feedforward / \u{3c3}", |r| r.feedforward_per_sigma),
         ("joint state", |r| r.state),

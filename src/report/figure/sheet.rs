@@ -12,7 +12,8 @@ pub fn sheet(title: &str, figures: &[Figure], columns: usize) -> String {
     let width = |column: usize| {
         layouts.iter().skip(column).step_by(columns).map(|l| l.total_width).fold(0.0, f64::max)
     };
-    let lefts: Vec<f64> = (0..=columns).map(|column| (0..column).map(width).fold(0.0, |a, b| a + b)).collect();
+    let lefts: Vec<f64> =
+        (0..=columns).map(|column| (0..column).map(width).fold(0.0, |a, b| a + b)).collect();
     let heights: Vec<f64> =
         layouts.chunks(columns).map(|row| row.iter().map(|l| l.total_height).fold(0.0, f64::max)).collect();
     let mut svg = String::new();

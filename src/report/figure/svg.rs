@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use super::axis::{Axis, Tick};
 use super::figure::{Figure, Mark, Shape};
-use super::style::{FONT, FONT_SIZE, GRID, GUIDE, PLOT, PLOT_HEIGHT, TEXT, TITLE_SIZE, colour, dash, text_width};
+use super::style::{
+    FONT, FONT_SIZE, GRID, GUIDE, PLOT, PLOT_HEIGHT, TEXT, TITLE_SIZE, colour, dash, text_width,
+};
 
 /// The area inside the axes, and the whole around it [px].
 pub(super) struct Layout {
@@ -54,7 +56,7 @@ impl Figure {
             (PLOT, PLOT_HEIGHT)
         };
         let ticks = self.y.ticks();
-        let widest = ticks.iter().map(|tick| label_width(tick)).fold(0.0, f64::max);
+        let widest = ticks.iter().map(label_width).fold(0.0, f64::max);
         let left = 42.0 + widest;
         let top = 44.0;
         let legend = self.legend();
@@ -88,7 +90,7 @@ impl Figure {
         svg.push_str("</g>");
         let _ = write!(
             svg,
-            r##"<rect x="{left:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}" fill="none" stroke="{TEXT}"/>"##
+            r#"<rect x="{left:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}" fill="none" stroke="{TEXT}"/>"#
         );
         pen.labels(svg);
         pen.legend(svg);
@@ -123,9 +125,11 @@ fn label_width(tick: &Tick) -> f64 {
 
 /// A tick's label, with its exponent raised.
 fn tick_text(svg: &mut String, (x, y): (f64, f64), anchor: &str, tick: &Tick) {
-    let exponent = tick.label.1.as_ref().map_or_else(String::new, |e| {
-        format!(r#"<tspan dy="-5" font-size="10">{e}</tspan>"#)
-    });
+    let exponent = tick
+        .label
+        .1
+        .as_ref()
+        .map_or_else(String::new, |e| format!(r#"<tspan dy="-5" font-size="10">{e}</tspan>"#));
     let _ = write!(
         svg,
         r#"<text x="{x:.1}" y="{y:.1}" text-anchor="{anchor}">{}{exponent}</text>"#,
