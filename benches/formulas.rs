@@ -1,7 +1,7 @@
 //! Wall time of the exact decisions: `cargo bench --bench formulas`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use kinstep::formula::{FormulaTable, Row, Strictness, read_rows};
+use kinstep::formula::{FeedbackRange, FormulaTable, Row, Strictness, read_rows};
 use std::hint::black_box;
 
 /// Reads, checks and ranges every row of the built-in table.
@@ -16,7 +16,7 @@ fn whole_table(criterion: &mut Criterion) {
     group.bench_function("check all rows and their feedback ranges", |bencher| {
         bencher.iter(|| {
             let rows = read_rows(black_box(&text), Strictness::Finished).expect("the built-in rows");
-            let ends = |row: Row| row.check().analysis().feedback_range().map(|range| range.value());
+            let ends = |row: Row| row.check().analysis().feedback_range().map(FeedbackRange::value);
             rows.into_iter().filter_map(ends).sum::<f64>()
         });
     });

@@ -86,7 +86,8 @@ fn derivative_rules_are_listed_with_their_noise() {
     assert_eq!(rules.len(), 6);
     assert_eq!((&rules[2]["id"], &rules[2]["error_constant"]), (&"bd3".into(), &"-1/4".into()));
     let text = kinstep(&["formula", "list", "--derivative-rules", "--order", "2-3"]).expect(0).out;
-    assert!(text.contains("bd3      3  -1/4  3.8370  11/6 -3 3/2 -1/3"), "{text}");
+    let plain = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(plain.contains("bd3 3 -1/4 3.8370 11/6 -3 3/2 -1/3"), "{text}");
     assert!(!text.contains("bd4"));
 }
 
@@ -111,9 +112,7 @@ fn the_card_has_exact_optima() {
 
 #[test]
 fn a_long_row_says_that_its_optimum_is_numeric() {
-    let alpha: Vec<&str> = ["1", "-1"].into_iter().chain(["0"; 18]).collect();
-    let beta: Vec<&str> = std::iter::once("0").chain(["1/19"; 19]).collect();
-    let run = kinstep(&["formula", "show", "--alpha", &alpha.join(","), "--beta", &beta.join(",")]).expect(0);
+    let run = kinstep(&["formula", "show", "la11-1560"]).expect(0);
     assert!(run.out.contains("out of reach for a row of this length"), "{}", run.out);
 }
 

@@ -46,4 +46,5 @@ pub use table::FormulaTable;
 
 pub use crate::math::RootCondition;
 
+#[cfg(feature = "cli")]
 pub(crate) use card_snippets::recursion;
