@@ -8,8 +8,8 @@ use super::space::Space;
 const UNSTABLE: f64 = 1e4;
 /// Beyond every merit of a row with range enough.
 const TOO_NARROW: f64 = 1e3;
-/// A range that ends farther out counts as ending here.
-const WIDEST: f64 = 1e6;
+/// Coordinates beyond this belong to rows with roots so near the circle that doubles can not tell.
+const FARTHEST: f64 = 10.0;
 
 /// A space of rows with what is wanted of them.
 pub(super) struct Judge<'a> {
@@ -26,7 +26,10 @@ impl Judge<'_> {
         if !row.is_strictly_stable() {
             return UNSTABLE + row.parasitic_radius().min(UNSTABLE);
         }
-        let h_max = row.range_end().min(WIDEST);
+        let h_max = row.range_end();
+        if h_max > self.widest() {
+            return 2.0 * UNSTABLE;
+        }
         if h_max < self.least_range {
             return TOO_NARROW + self.least_range - h_max;
         }
@@ -45,7 +48,16 @@ impl Judge<'_> {
 
     /// Returns the merit of a point of the space.
     pub(super) fn merit_at(&self, point: &[f64]) -> f64 {
-        self.merit(&self.space.free(point))
+        match point.iter().map(|x| x.abs()).fold(0.0, f64::max) {
+            far if far > FARTHEST => 2.0 * UNSTABLE + far,
+            _ => self.merit(&self.space.free(point)),
+        }
+    }
+
+    /// No explicit row has a wider range: h gamma_j is at most 2 C(s, j) for all j, and one gamma_j is at least 1/s.
+    fn widest(&self) -> f64 {
+        let steps = self.space.steps as f64;
+        steps * (steps + 1.0).exp2()
     }
 
     /// Returns whether a merit is that of a stable row with range enough.

@@ -119,7 +119,7 @@ pub struct Outcome {
 /// Starts are worked off in groups of this size; between groups the observer hears of the best.
 const GROUP: usize = 8;
 /// So many of the best starts are refined and brought to fractions.
-const REFINED: usize = 6;
+const REFINED: usize = 8;
 
 /// Searches.
 ///
@@ -152,12 +152,14 @@ struct Run<'a, O: Observer, S: Fn() -> bool + Sync> {
 impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
     fn search(&self) -> Result<Outcome, SearchError> {
         let judge = self.judge(&self.options.objective);
-        let refined = self.refine(&judge, self.explore(&judge));
-        let best = refined.first().filter(|best| Judge::<'_>::is_acceptable(best.merit));
-        let best = best.ok_or(SearchError::NothingFound { starts: self.options.starts })?;
-        let bound = self.value(best.merit);
+        let mut refined = self.refine(&judge, self.explore(&judge));
+        refined.retain(|best| Judge::<'_>::is_acceptable(best.merit));
         let candidates = self.to_fractions(&judge, &refined);
         let rows = self.pick(&judge, candidates);
+        // Beside double roots doubles promise too much: what counts is what the exact decision confirms.
+        let real = refined.iter().find(|best| self.is_real(&judge, best)).map(|best| best.merit);
+        let best = real.into_iter().chain(rows.iter().map(|row| row.merit)).reduce(f64::min);
+        let bound = self.value(best.ok_or(SearchError::NothingFound { starts: self.options.starts })?);
         let front = if self.options.front { self.front(&rows) } else { Vec::new() };
         Ok(Outcome { bound, rows, front, complete: !(self.stop)() })
     }
@@ -214,6 +216,17 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
             evolve(|point| judge.merit_at(point), start, 0.02, evaluations, &mut random, self.stop)
         };
         sorted(found.into_par_iter().enumerate().map(refine).collect())
+    }
+
+    /// Whether the exact decision confirms a point, taken to fractions so fine that nothing is lost.
+    fn is_real(&self, judge: &Judge<'_>, best: &Best) -> bool {
+        const FINE: u32 = 4_000_000_000;
+        let unit = self.denominators.first().copied().unwrap_or(1);
+        let denominator = FINE / unit * unit;
+        let fine = |u: f64| (u * f64::from(denominator)).round() as i64;
+        let numerators = self.space.free(&best.point).into_iter().map(fine).collect();
+        let candidate = Candidate { numerators, denominator, merit: best.merit };
+        self.confirm(judge.objective, &candidate, "bound").is_some()
     }
 
     /// Fractions of every denominator near the refined points.
