@@ -105,8 +105,10 @@ impl FloatRow {
             let here = at(k);
             let found = if before.1 * here.1 <= 0.0 {
                 Some(self.zero_between(before, here))
-            } else {
+            } else if k > 1 {
                 self.dip([earlier, before, here])
+            } else {
+                None
             };
             end = end.min(found.map_or(f64::INFINITY, |phi| positive(self.crossing(phi).1)));
             (earlier, before) = (before, here);
