@@ -116,10 +116,13 @@ impl FloatRow {
         end
     }
 
+    /// Smaller values, as near z = 1, may be nothing but rounding.
+    const NOISE: f64 = 1e-8;
+
     /// Where a pair of zeros hides between points of equal sign: the vertex of their parabola, if the sign differs there.
     fn dip(&self, [a, b, c]: [(f64, f64); 3]) -> Option<f64> {
         let bend = a.1 - 2.0 * b.1 + c.1;
-        if b.1.abs() > a.1.abs() || b.1.abs() > c.1.abs() || bend == 0.0 {
+        if b.1.abs() < Self::NOISE || b.1.abs() > a.1.abs() || b.1.abs() > c.1.abs() || bend == 0.0 {
             return None;
         }
         let vertex = b.0 + (c.0 - b.0) * (a.1 - c.1) / (2.0 * bend);
