@@ -216,13 +216,3 @@ fn a_search_that_is_interrupted_gives_what_it_has() {
         assert!(!outcome.complete);
     }
 }
-
-#[test]
-fn a_bound_is_never_better_than_what_exact_arithmetic_confirms() {
-    // At eight steps the widest ranges end where roots touch the circle twice, which doubles overlook with ease.
-    let wide =
-        Options { starts: 16, denominator: 480, ..Options::new(Family::LookAhead, 8, 4, Objective::Range) };
-    let outcome = search(&wide, &()).expect("rows");
-    assert!(outcome.bound >= outcome.rows[0].figures.h_max && outcome.bound < 3.0, "{}", outcome.bound);
-    assert!(outcome.rows[0].figures.h_max > 2.2);
-}

@@ -99,34 +99,15 @@ impl FloatRow {
         let angle = |k: usize| std::f64::consts::PI * (k as f64 + 0.5) / points as f64;
         let mut end =
             positive(-value_at(&self.alpha, (-1.0, 0.0)).0 / value_at(&self.feedback, (-1.0, 0.0)).0);
-        let at = |k: usize| (angle(k), self.crossing(angle(k)).0);
-        let (mut earlier, mut before) = (at(0), at(0));
+        let mut before = (angle(0), self.crossing(angle(0)).0);
         for k in 1..points {
-            let here = at(k);
-            let found = if before.1 * here.1 <= 0.0 {
-                Some(self.zero_between(before, here))
-            } else if k > 1 {
-                self.dip([earlier, before, here])
-            } else {
-                None
-            };
-            end = end.min(found.map_or(f64::INFINITY, |phi| positive(self.crossing(phi).1)));
-            (earlier, before) = (before, here);
+            let here = (angle(k), self.crossing(angle(k)).0);
+            if before.1 * here.1 <= 0.0 {
+                end = end.min(positive(self.crossing(self.zero_between(before, here)).1));
+            }
+            before = here;
         }
         end
-    }
-
-    /// Smaller values, as near z = 1, may be nothing but rounding.
-    const NOISE: f64 = 1e-8;
-
-    /// Where a pair of zeros hides between points of equal sign: the vertex of their parabola, if the sign differs there.
-    fn dip(&self, [a, b, c]: [(f64, f64); 3]) -> Option<f64> {
-        let bend = a.1 - 2.0 * b.1 + c.1;
-        if b.1.abs() < Self::NOISE || b.1.abs() > a.1.abs() || b.1.abs() > c.1.abs() || bend == 0.0 {
-            return None;
-        }
-        let vertex = b.0 + (c.0 - b.0) * (a.1 - c.1) / (2.0 * bend);
-        (self.crossing(vertex).0 * b.1 <= 0.0).then_some(vertex)
     }
 
     /// The part that must vanish at z = e^(i phi), and the h there.
