@@ -70,6 +70,8 @@ fn the_error_falls_up_to_the_end_of_the_range_and_explodes_beyond() {
     assert_within_a_percent(run(scheme::dtsmp([left()], 0.01, 0.66)).arms[0].max_error, 2.19e-7);
     let refused = scheme::dtsmp([left()], 0.01, 0.7).duration(10.0).build().unwrap_err().to_string();
     assert!(refused.contains("(0, 2/3)"), "{refused}");
+    let edge = scheme::dtsmp([left()], 0.01, 2.0 / 3.0).duration(10.0).build();
+    assert!(edge.is_err(), "the end of the range is outside, also as the nearest double");
     let plan = run(scheme::dtsmp([left()], 0.01, 0.7).allow_unstable(true));
     assert_eq!(plan.status, PlanStatus::Diverged, "{:?}", plan.reason);
 }

@@ -183,8 +183,10 @@ impl FeedbackRange {
     }
 
     /// Returns whether h is inside the range, decided for the exact value of the double.
+    ///
+    /// The double nearest to the end is how the end itself is written down, so it counts as the end: outside.
     pub fn contains(&self, h: f64) -> bool {
-        rational_from_f64(h).is_some_and(|h| self.contains_exact(&h))
+        h < self.value() && rational_from_f64(h).is_some_and(|h| self.contains_exact(&h))
     }
 
     /// Returns whether an exact h is inside the range.
