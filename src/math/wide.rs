@@ -123,8 +123,14 @@ impl Real for Wide {
 
     fn to_f64(&self) -> f64 {
         const KEPT: u64 = 64;
-        let drop = self.mantissa.bits().saturating_sub(KEPT);
-        let top = (&self.mantissa >> drop).to_f64().unwrap_or(f64::NAN);
+        let magnitude = self.mantissa.magnitude();
+        let drop = magnitude.bits().saturating_sub(KEPT);
+        let mut top = magnitude >> drop;
+        // What is dropped must still tell a tie from more than a tie when the rest is rounded to a double.
+        if magnitude.trailing_zeros().is_some_and(|zeros| zeros < drop) {
+            top.set_bit(0, true);
+        }
+        let top = top.to_f64().unwrap_or(f64::NAN) * if self.mantissa.is_negative() { -1.0 } else { 1.0 };
         // In two halves, so that neither power leaves the range of doubles before the product does.
         let exponent = (self.exponent + drop.cast_signed()).clamp(-2200, 2200) as i32;
         let half = exponent / 2;
@@ -148,6 +154,12 @@ impl Real for Wide {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn a_product_next_to_a_tie_is_rounded_as_doubles_are() {
+        let (a, b) = (72_922_266.524_176_37_f64, -313_751_580.240_410_75_f64);
+        assert_eq!((Wide::from_f64(a) * Wide::from_f64(b)).to_f64(), a * b);
+    }
 
     proptest! {
         #[test]
