@@ -121,9 +121,12 @@ fn help_and_version_are_exit_0_and_help_has_examples() {
 fn schemas_are_json_and_know_the_keys() {
     let scenario = kinstep(&["schema", "scenario"]).expect(0).json();
     assert_eq!(scenario["additionalProperties"], false);
-    for key in ["sigma", "duration", "formula", "arm"] {
-        assert!(scenario["required"].as_array().unwrap().contains(&key.into()), "{key}");
+    let required = scenario["required"].as_array().unwrap();
+    for key in ["sigma", "duration", "arm"] {
+        assert!(required.contains(&key.into()), "{key}");
     }
+    assert!(!required.contains(&"formula".into()), "without one, the best general row is taken");
+    assert!(scenario["properties"]["formula"].is_object());
     assert!(scenario["properties"]["sigma"]["description"].as_str().unwrap().contains("in s"));
     let formula = kinstep(&["schema", "formula", "--json"]).expect(0).json();
     assert!(formula["$defs"]["Row"]["properties"]["error_constant"].is_object());

@@ -79,9 +79,9 @@ fn noise_gains_end_where_the_range_ends() {
 #[test]
 fn the_range_knows_its_exact_edge() {
     let range = formula("la6-wang-guo").feedback_range();
-    // The double nearest to 2/3 is below it, the next one above.
-    let below = 2.0_f64 / 3.0;
-    assert!(range.contains(below) && !range.contains(below.next_up()));
+    // The double nearest to 2/3 lies below it, and stands for it: it is outside, and the one before it is inside.
+    let end = 2.0_f64 / 3.0;
+    assert!(range.contains(end.next_down()) && !range.contains(end) && !range.contains(end.next_up()));
     assert!(!range.contains(0.0) && range.contains(f64::MIN_POSITIVE));
     assert!(!range.contains(f64::NAN) && !range.contains(f64::INFINITY) && !range.contains(-0.1));
     assert!(range.contains_exact(&number("0.66666666666666666666666666666666")));
