@@ -66,6 +66,18 @@ fn what_does_not_fit_the_chain_says_what_would() {
 }
 
 #[test]
+fn links_that_nothing_moves_between_have_a_pose_and_can_not_follow_a_path() {
+    let fixed = ["--base", "panda_link7", "--tip", "panda_hand"];
+    let pose = kinstep(&[&["robot", "fk", "panda", "--json"], &fixed[..]].concat()).expect(0).json();
+    assert_eq!(numbers(&pose["position"]), [0.0, 0.0, 0.107]);
+    let jacobian = kinstep(&[&["robot", "jacobian", "panda"], &fixed[..]].concat()).expect(0);
+    assert!(jacobian.out.contains("0.107000000"), "{}", jacobian.out);
+    let set = ["arm.left.base=panda_link7", "arm.left.tip=panda_hand"].map(|set| format!("--set={set}"));
+    let error = kinstep(&["plan", "--json", &set[0], &set[1]]).expect(3).error();
+    assert!(error["message"].as_str().unwrap().contains("nothing moves between"), "{error}");
+}
+
+#[test]
 fn the_robots_are_listed_shown_and_sound() {
     let list = kinstep(&["robot", "list", "--json"]).expect(0).json();
     let robots = list["robots"].as_array().unwrap();

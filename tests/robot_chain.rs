@@ -36,7 +36,24 @@ fn refuses_an_unknown_tip_with_the_nearest_names() {
     let error = robot.chain("base", "tipp").unwrap_err();
     assert_eq!(error.to_string(), "the robot has no link `tipp`; did you mean `tip`?");
     assert!(matches!(robot.chain("tip", "tip"), Err(ChainError::SameLink { .. })));
-    assert!(matches!(robot.chain("b", "tip"), Err(ChainError::Rigid { .. })));
+}
+
+#[test]
+fn links_with_fixed_joints_between_them_have_a_constant_pose() {
+    let robot = Robot::from_urdf(
+        r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
+        <joint name="up" type="fixed"><parent link="a"/><child link="b"/><origin xyz="0 0 2" rpy="0 0 1.5"/></joint>
+        <joint name="out" type="fixed"><parent link="b"/><child link="c"/><origin xyz="1 0 0"/></joint></robot>"#,
+    )
+    .unwrap();
+    let chain = robot.chain("a", "c").unwrap();
+    assert_eq!((chain.dof(), chain.reach()), (0, 0.0));
+    let pose = chain.forward(&[], &mut chain.scratch()).pose();
+    let expected = kinstep::nalgebra::Vector3::new(1.5_f64.cos(), 1.5_f64.sin(), 2.0);
+    assert!((pose.translation.vector - expected).norm() < 1e-15);
+    let back = robot.chain("c", "a").unwrap().mounted(&pose);
+    let origin = back.forward(&[], &mut back.scratch()).pose();
+    assert!(origin.translation.vector.norm() < 1e-15 && origin.rotation.angle() < 1e-15);
 }
 
 #[test]

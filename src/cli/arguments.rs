@@ -426,7 +426,7 @@ pub(super) struct ChainArguments {
 
     /// Joint positions in path order in rad or m, separated by commas; expressions in pi are read
     #[arg(long, value_name = "Q,...", allow_hyphen_values = true)]
-    pub(super) q: String,
+    pub(super) q: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, Args)]

@@ -247,7 +247,7 @@ impl Kinematics {
         let chain = robot
             .chain(base, tip)
             .map_err(|e| Failure::new(Exit::Robot, e.to_string()).in_file(&file.robot))?;
-        let q = joint_positions(q, &chain)?;
+        let q = joint_positions("--q", q.as_deref(), &chain)?;
         let mut scratch = chain.scratch();
         let posed = chain.forward(&q, &mut scratch);
         let pose = posed.pose();
@@ -270,16 +270,22 @@ impl Kinematics {
     }
 }
 
-fn joint_positions(text: &str, chain: &Chain) -> Result<Vec<f64>, Failure> {
-    let parts = || text.split(',').map(str::trim);
-    let values: Result<Vec<f64>, _> = parts().map(evaluate).collect();
-    let values = values.map_err(|e| Failure::usage(format!("--q {text}: {e}")))?;
+/// Reads one position per joint of the chain; a chain without joints needs none.
+pub(super) fn joint_positions(option: &str, text: Option<&str>, chain: &Chain) -> Result<Vec<f64>, Failure> {
+    let text = text.unwrap_or_default();
+    let values = if text.trim().is_empty() { Vec::new() } else { numbers(option, text)? };
     if values.len() == chain.dof() {
         return Ok(values);
     }
     let names: Vec<&str> = chain.joints().iter().map(|joint| joint.name.as_str()).collect();
-    let message = format!("--q: expected {} ({}), got {}", chain.dof(), names.join(", "), values.len());
+    let message = format!("{option}: expected {} ({}), got {}", chain.dof(), names.join(", "), values.len());
     Err(Failure::usage(message))
+}
+
+/// Reads numbers or expressions in pi, separated by commas.
+pub(super) fn numbers(option: &str, text: &str) -> Result<Vec<f64>, Failure> {
+    let values: Result<Vec<f64>, _> = text.split(',').map(str::trim).map(evaluate).collect();
+    values.map_err(|e| Failure::usage(format!("{option} {text}: {e}")))
 }
 
 impl Show for Kinematics {

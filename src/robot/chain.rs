@@ -93,7 +93,7 @@ impl Chain {
 
     /// Returns an upper bound \[m\] of the distance from the first moving joint to the tip: the lengths of all
     /// constant translations after that joint plus the travel of the prismatic joints within their limits.
-    /// Infinite when a prismatic joint has no limits.
+    /// Infinite when a prismatic joint has no limits, zero when nothing moves.
     pub fn reach(&self) -> f64 {
         self.reach
     }

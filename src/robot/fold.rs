@@ -45,9 +45,6 @@ pub(super) fn fold(robot: &Robot, steps: &[Step], base: &str, tip: &str) -> Resu
             constant *= joint.origin.inverse();
         }
     }
-    if moving.is_empty() {
-        return Err(ChainError::Rigid { base: base.to_owned(), tip: tip.to_owned() });
-    }
     let reach = reach(&moving, &constant, &columns.joints);
     Ok(assemble(&moving, &constant, columns.joints, reach, base, tip))
 }
@@ -72,7 +69,8 @@ fn assemble(
             motion: own.motion,
         });
     }
-    let start = Frame::new(&moving[0].before);
+    // Where nothing moves, the whole chain is one constant.
+    let start = Frame::new(moving.first().map_or(last, |first| &first.before));
     Chain { base: base.to_owned(), tip: tip.to_owned(), joints, reach, start, segments }
 }
 
@@ -95,8 +93,11 @@ fn constant_motion(motion: Motion, value: f64) -> IsometryMatrix3<f64> {
     }
 }
 
-/// Returns the sum of the constant lengths after the first motion and of the prismatic travels.
+/// Returns the sum of the constant lengths after the first motion and of the prismatic travels; zero where nothing moves.
 fn reach(moving: &[Moving], last: &IsometryMatrix3<f64>, joints: &[ChainJoint]) -> f64 {
+    if moving.is_empty() {
+        return 0.0;
+    }
     let lengths = moving.iter().skip(1).map(|next| &next.before).chain([last]);
     let constant: f64 = lengths.map(|pose| pose.translation.vector.norm()).sum();
     let travels = moving.iter().filter(|own| own.motion == Motion::Shift).map(|own| {

@@ -278,12 +278,11 @@ impl Robot {
     }
 
     /// Returns the directed path from link `base` to link `tip`, in either direction and through a common
-    /// ancestor if need be, ready for kinematics.
+    /// ancestor if need be, ready for kinematics. Links with only fixed joints between them make a chain of no joints.
     ///
     /// # Errors
     /// [`ChainError`]: a link that does not exist (with the nearest names), `base` equal to `tip`, links that
-    /// no joints connect, nothing movable between them, or a joint on the way that is defective or of a kind
-    /// that a chain can not carry.
+    /// no joints connect, or a joint on the way that is defective or of a kind that a chain can not carry.
     pub fn chain(&self, base: &str, tip: &str) -> Result<Chain, ChainError> {
         path::chain(self, base, tip)
     }

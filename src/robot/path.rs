@@ -82,14 +82,6 @@ pub enum ChainError {
         /// Its type.
         kind: JointKind,
     },
-    /// Only fixed joints lie between the two.
-    #[error("nothing moves between {} and {}: every joint between them is fixed", names::quote(.base), names::quote(.tip))]
-    Rigid {
-        /// Where the path begins.
-        base: String,
-        /// Where it ends.
-        tip: String,
-    },
     /// The limits of a joint and of its followers on the path exclude each other.
     #[error("no position of joint {} satisfies its own limits and those of {}, which follows it",
             names::quote(.joint), names::quote(.follower))]

@@ -137,10 +137,15 @@ fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, S
         let path = Some(at.key("robot")).filter(|_| refusal.kind == ErrorKind::File);
         ScenarioError { message, path, ..refusal }
     })?;
-    robot.chain(&spec.base, &spec.tip).map_err(|e| {
+    let chain = robot.chain(&spec.base, &spec.tip).map_err(|e| {
         let key = if robot.link(&spec.base).is_none() { "base" } else { "tip" };
         ScenarioError::at(ErrorKind::Robot, &at.key(key), format!("robot {}: {e}", source.label()))
-    })
+    })?;
+    if chain.dof() == 0 {
+        let problem = format!("nothing moves between `{}` and `{}`", spec.base, spec.tip);
+        return Err(ScenarioError::at(ErrorKind::Robot, &at.key("tip"), problem));
+    }
+    Ok(chain)
 }
 
 /// The number of joints and their limits, checked where kinematics needs them first.
