@@ -71,13 +71,13 @@ fn a_file_that_is_missing_or_a_directory_is_named() {
 
 #[test]
 fn a_robot_without_a_name_is_called_after_its_file() {
-    let robot = Robot::from_urdf_file(folder().join("u07_no_name.urdf"), &UrdfOptions::default()).unwrap();
-    assert_eq!(robot.name(), "u07_no_name");
+    let robot = Robot::from_urdf_file(folder().join("no_name.urdf"), &UrdfOptions::default()).unwrap();
+    assert_eq!(robot.name(), "no_name");
 }
 
 #[test]
 fn a_defect_spoils_only_the_chains_through_it() {
-    let robot = read("u18_axis_zero.urdf");
+    let robot = read("axis_zero.urdf");
     assert!(robot.joint("moves").unwrap().defect.is_some());
     let error = robot.chain("base", "arm").unwrap_err();
     assert_eq!(
@@ -85,15 +85,15 @@ fn a_defect_spoils_only_the_chains_through_it() {
         "the path from `base` to `arm` passes joint `moves`, which is defective (line 8): its axis `0 0 0` has no \
          direction"
     );
-    let robot = read("u20_not_finite.urdf");
+    let robot = read("not_finite.urdf");
     assert!(robot.chain("arm", "b").is_err());
-    let robot = read("u16_unknown_types.urdf");
+    let robot = read("unknown_types.urdf");
     assert!(matches!(robot.chain("b", "c"), Err(ChainError::DefectiveJoint { .. })));
 }
 
 #[test]
 fn joints_outside_a_loop_stay_usable() {
-    let robot = read("u09_loop.urdf");
+    let robot = read("loop.urdf");
     assert_eq!(robot.chain("b", "tip").unwrap().dof(), 1);
     let error = robot.chain("a", "tip").unwrap_err().to_string();
     assert!(error.contains("loop through the links"), "{error}");
@@ -101,7 +101,7 @@ fn joints_outside_a_loop_stay_usable() {
 
 #[test]
 fn two_roots_are_no_obstacle_below_one_of_them() {
-    let robot = read("u11_two_roots.urdf");
+    let robot = read("two_roots.urdf");
     assert_eq!(robot.chain("other", "right").unwrap().dof(), 1);
     let error = robot.chain("base", "right").unwrap_err().to_string();
     assert_eq!(
@@ -112,7 +112,7 @@ fn two_roots_are_no_obstacle_below_one_of_them() {
 
 #[test]
 fn a_joint_that_the_tree_can_not_hold_is_named_when_it_is_missed() {
-    let robot = read("u13_undefined_links.urdf");
+    let robot = read("undefined_links.urdf");
     let error = robot.chain("base", "arm").unwrap_err().to_string();
     assert!(
         error.contains("joint `j1` is defective (line 5): its parent link `bsae` is not defined"),
@@ -122,7 +122,7 @@ fn a_joint_that_the_tree_can_not_hold_is_named_when_it_is_missed() {
 
 #[test]
 fn free_joints_are_refused_on_the_path_only() {
-    let robot = read("u17_free_joints.urdf");
+    let robot = read("free_joints.urdf");
     assert_eq!(robot.chain("base", "d").unwrap().dof(), 1);
     for (tip, kind) in [("arm", JointKind::Floating), ("b", JointKind::Planar), ("c", JointKind::Spherical)] {
         let error = robot.chain("d", tip).unwrap_err();
@@ -135,7 +135,7 @@ fn free_joints_are_refused_on_the_path_only() {
 
 #[test]
 fn missing_limits_are_unknown_zero_or_assumed_as_asked() {
-    let robot = read("u22_limits_missing.urdf");
+    let robot = read("limits_missing.urdf");
     let limits = |robot: &Robot, name: &str| {
         let limits = robot.joint(name).unwrap().limits;
         (limits.lower, limits.upper, limits.velocity)
@@ -147,9 +147,9 @@ fn missing_limits_are_unknown_zero_or_assumed_as_asked() {
     assert_eq!(limits(&robot, "j3"), (0.0, 1.0, 1.0));
     assert_eq!(limits(&robot, "j4"), (-1.0, 1.0, inf));
     assert_eq!(limits(&robot, "j5"), (-inf, inf, inf));
-    let newer = read("u22_limits_missing_in_1_2.urdf");
+    let newer = read("limits_missing_in_1_2.urdf");
     assert_eq!(limits(&newer, "j2"), (-1.0, inf, 1.0));
-    let text = fs::read_to_string(folder().join("u22_limits_missing.urdf")).unwrap();
+    let text = fs::read_to_string(folder().join("limits_missing.urdf")).unwrap();
     let options = UrdfOptions { assume_unlimited: true, ..UrdfOptions::default() };
     let assumed = Robot::from_urdf_with(&text, &options).unwrap();
     assert_eq!(limits(&assumed, "j0"), (-inf, inf, inf));
@@ -158,7 +158,7 @@ fn missing_limits_are_unknown_zero_or_assumed_as_asked() {
 
 #[test]
 fn strict_reading_refuses_vendor_attributes() {
-    let text = fs::read_to_string(folder().join("u26_misspelt.urdf")).unwrap();
+    let text = fs::read_to_string(folder().join("misspelt.urdf")).unwrap();
     let lenient = Robot::from_urdf(&text).unwrap();
     assert!(lenient.joint("j2").unwrap().defect.is_none());
     let options = UrdfOptions { strict: true, ..UrdfOptions::default() };
@@ -168,7 +168,7 @@ fn strict_reading_refuses_vendor_attributes() {
 
 #[test]
 fn mimicking_what_stands_still_makes_a_joint_fixed_at_its_offset() {
-    let robot = read("u28_mimic_fixed.urdf");
+    let robot = read("mimic_fixed.urdf");
     for (name, angle) in [("j3", 0.5), ("j4", 0.0), ("j5", 1.0)] {
         let joint = robot.joint(name).unwrap();
         assert_eq!(joint.kind, JointKind::Fixed);

@@ -4,6 +4,7 @@ mod algebraic;
 mod bivariate;
 mod complex_roots;
 mod double_double;
+mod expression;
 mod figure;
 mod gram;
 mod interpolation;
@@ -21,6 +22,7 @@ mod wide;
 
 pub use algebraic::{AlgebraicNumber, Surd};
 pub use complex_roots::{complex_roots, root_moduli};
+pub use expression::{ExpressionError, evaluate};
 pub use gram::GramCholesky;
 pub use polynomial::Polynomial;
 pub use rational::{

@@ -50,3 +50,27 @@ impl fmt::Display for Diagnostic {
         write!(f, "{}:{}: {}: {}", self.line, self.column, self.severity, self.message)
     }
 }
+
+/// The first finding of severity error.
+pub(super) fn first_error(diagnostics: &[Diagnostic]) -> Option<&Diagnostic> {
+    diagnostics.iter().find(|found| found.severity == Severity::Error)
+}
+
+/// Returns the first error in a sentence, and how many more there are.
+pub(super) fn summary(diagnostics: &[Diagnostic]) -> String {
+    match first_error(diagnostics) {
+        Some(first) => {
+            format!("line {}, column {}: {}{}", first.line, first.column, first.message, more(diagnostics))
+        }
+        None => "the file can not be read".to_owned(),
+    }
+}
+
+/// Returns ` (and 2 more errors)`, or nothing when there is only one.
+pub(super) fn more(diagnostics: &[Diagnostic]) -> String {
+    match diagnostics.iter().filter(|found| found.severity == Severity::Error).count() {
+        0 | 1 => String::new(),
+        2 => " (and 1 more error)".to_owned(),
+        n => format!(" (and {} more errors)", n - 1),
+    }
+}

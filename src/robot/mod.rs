@@ -1,24 +1,39 @@
 //! Robots: a URDF read strictly into flat arrays, and directed chains through it with pose and Jacobian.
 //!
 //! [`Robot::from_urdf`] gives a robot and its [`Diagnostic`]s; a defective joint spoils only the chains that
-//! pass through it. [`Robot::chain`] gives the path between any two links, in either direction, and
+//! pass through it. [`Robot::from_dh`] makes one of a Denavit-Hartenberg table. [`Robot::with_calibration`],
+//! [`Robot::with_locked`] and [`Robot::with_tool`] give changed copies, [`Robot::to_urdf`] writes any of them down. [`Robot::chain`] gives the path between any two links, in either direction, and
 //! [`Chain::forward`] its kinematics.
 
+mod calibration;
 mod chain;
+mod dh;
 mod diagnostic;
+mod displacement;
 pub mod embedded;
+mod export;
+mod file;
 mod fold;
 mod kinematics;
+mod lock;
 mod model;
 mod names;
 mod path;
+mod poses;
+mod toml_table;
+mod tool;
 mod tree;
 mod urdf;
 
+pub use calibration::{Calibration, CalibrationError, JointCorrection};
 pub use chain::{Chain, ChainJoint, LimitViolation};
+pub use dh::{DhConvention, DhError, DhRow, DhTable};
 pub use diagnostic::{Diagnostic, Severity};
+pub use export::ExportError;
 pub use kinematics::{ChainScratch, Posed};
+pub use lock::LockError;
 pub use model::{Defect, Joint, JointKind, Limits, Link, Mimic, Robot};
 pub use path::ChainError;
+pub use tool::ToolError;
 pub use tree::{TreeRow, TreeRows};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, ReadError, UrdfError, UrdfOptions};

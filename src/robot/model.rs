@@ -155,6 +155,16 @@ pub struct Joint {
     pub mimic: Option<Mimic>,
     /// Set when no chain may pass through the joint.
     pub defect: Option<Defect>,
+    /// Roll, pitch and yaw that `origin` was made from, where they are known: bits that the matrix does not give back.
+    pub(super) angles: Option<[f64; 3]>,
+}
+
+impl Joint {
+    /// Moves the joint's origin; the angles stay known where its rotation stays the same.
+    pub(super) fn place(&mut self, origin: IsometryMatrix3<f64>) {
+        self.angles = self.angles.filter(|_| origin.rotation == self.origin.rotation);
+        self.origin = origin;
+    }
 }
 
 /// A joint that the file has but the tree can not hold (an undefined link, a second parent, a loop).
@@ -226,6 +236,12 @@ impl Robot {
     /// [`ReadError::File`] when the file can not be read, [`ReadError::Urdf`] as [`Robot::from_urdf`].
     pub fn from_urdf_file(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<Robot, ReadError> {
         urdf::read_file(path.as_ref(), options)
+    }
+
+    /// A robot of links depth first and their joints in that order.
+    pub(super) fn assembled(name: String, links: Vec<Link>, joints: Vec<Joint>) -> Robot {
+        let link_by_name = links.iter().enumerate().map(|(i, link)| (link.name.clone(), i)).collect();
+        Robot { name, links, joints, strays: Vec::new(), link_by_name, diagnostics: Vec::new() }
     }
 
     /// The robot's name.

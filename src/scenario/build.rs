@@ -14,7 +14,7 @@ use crate::formula::{Duty, Formula, FormulaTable};
 use crate::law::Pseudoinverse;
 use crate::math::figure;
 use crate::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
-use crate::robot::{Chain, UrdfOptions};
+use crate::robot::{Chain, ChainError, UrdfOptions};
 use crate::task::{self, Motion, Planar, PlanarCurve, TimeLaw, Turning};
 
 impl Scenario {
@@ -137,9 +137,12 @@ fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, S
         let path = Some(at.key("robot")).filter(|_| refusal.kind == ErrorKind::File);
         ScenarioError { message, path, ..refusal }
     })?;
-    let chain = robot.chain(&spec.base, &spec.tip).map_err(|e| {
+    let (robot, tip) = spec.prepared(at, robot, folder)?;
+    let chain = robot.chain(&spec.base, &tip).map_err(|e| {
         let key = if robot.link(&spec.base).is_none() { "base" } else { "tip" };
-        ScenarioError::at(ErrorKind::Robot, &at.key(key), format!("robot {}: {e}", source.label()))
+        let is_free = matches!(e, ChainError::UnsupportedJoint { .. });
+        let remedy = if is_free { ", or hold the joint still with `lock`" } else { "" };
+        ScenarioError::at(ErrorKind::Robot, &at.key(key), format!("robot {}: {e}{remedy}", source.label()))
     })?;
     if chain.dof() == 0 {
         let problem = format!("nothing moves between `{}` and `{}`", spec.base, spec.tip);

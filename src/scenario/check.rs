@@ -117,10 +117,15 @@ fn check_arm(at: &KeyPath, arm: &ArmSpec) -> Result<(), ScenarioError> {
     for (value, joint) in arm.q0.iter().zip(0..) {
         believable(&at.key("q0").index(joint), value)?;
     }
-    for (key, triple) in [("xyz", &arm.mount.xyz), ("rpy", &arm.mount.rpy)] {
-        for (value, axis) in triple.iter().zip(0..) {
-            believable(&at.key("mount").key(key).index(axis), value)?;
+    for (name, pose) in [("mount", &arm.mount), ("tool", &arm.tool)] {
+        for (key, triple) in [("xyz", &pose.xyz), ("rpy", &pose.rpy)] {
+            for (value, axis) in triple.iter().zip(0..) {
+                believable(&at.key(name).key(key).index(axis), value)?;
+            }
         }
+    }
+    for (joint, held) in &arm.lock {
+        held.numbers().iter().try_for_each(|value| believable(&at.key("lock").key(joint), value))?;
     }
     check_path(&at.key("path"), &arm.path, arm.task)
 }

@@ -50,6 +50,10 @@ impl Scenario {
             if let RobotSource::File(path) = RobotSource::find(&arm.robot, folder)? {
                 arm.robot = reference(&path, into)?;
             }
+            if let Some(named) = &arm.calibration {
+                let path = find(named, folder).ok_or_else(|| missing(named, folder))?;
+                arm.calibration = Some(reference(&path, into)?);
+            }
         }
         let mut rows: Vec<PathBuf> = Vec::new();
         for named in &self.formulas {

@@ -7,30 +7,33 @@ mod build;
 mod check;
 mod document;
 mod error;
-mod expression;
 mod files;
 mod formulas;
+mod held;
 mod key_path;
 mod model;
 mod overrides;
 mod path_spec;
 mod real;
+mod robot_edits;
 mod robots;
 #[cfg(test)]
 mod tests;
 
 pub use document::ScenarioText;
 pub use error::{ErrorKind, Place, ScenarioError};
-pub use expression::{ExpressionError, evaluate};
 pub use formulas::FormulaRows;
+pub use held::Held;
 pub use key_path::{KeyPath, Step};
 pub use model::{ArmSpec, LawKind, LawSpec, Mount, Scenario, Start, TaskKind};
 pub use path_spec::{PathKind, PathSpec, Plane, TimeLawKind, TurnSpec};
+pub use crate::math::{ExpressionError, evaluate};
 pub use real::Real;
 pub use robots::RobotSource;
 
 #[cfg(feature = "cli")]
-#[cfg(feature = "cli")]
 pub(crate) use document::read_text;
 #[cfg(feature = "cli")]
 pub(crate) use formulas::row_refusals;
+#[cfg(feature = "cli")]
+pub(crate) use robot_edits::{calibrated, tool_name};

@@ -1,7 +1,10 @@
 //! What a scenario says, as plain values.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
+use super::held::Held;
 use super::path_spec::PathSpec;
 use super::real::{Real, exactly};
 
@@ -86,7 +89,8 @@ pub enum LawKind {
 pub struct ArmSpec {
     /// Name of the arm: letters, digits, `-` and `_`.
     pub name: String,
-    /// A built-in robot by name, or a path to a URDF file, relative to the scenario's own file.
+    /// A built-in robot by name, or a path to a URDF file or a Denavit-Hartenberg table, relative to the scenario's own
+    /// file.
     pub robot: String,
     /// Link at which the chain begins.
     pub base: String,
@@ -99,6 +103,16 @@ pub struct ArmSpec {
     /// Pose of `base` in the world. Default: the world's own.
     #[serde(default, skip_serializing_if = "Mount::is_identity")]
     pub mount: Mount,
+    /// Pose of the tool's tip in the link `tip`: what then follows the path. Default: none.
+    #[serde(default, skip_serializing_if = "Mount::is_identity")]
+    pub tool: Mount,
+    /// A file of corrections of this particular arm's joints (tables `[joint.NAME]` with `xyz`, `rpy`, `zero`,
+    /// `reversed`), relative to the scenario's own file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<String>,
+    /// Joints of the robot that are held still, by name; on the arm's path they count as fixed.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub lock: BTreeMap<String, Held>,
     /// The path of the tip.
     pub path: PathSpec,
 }
@@ -116,7 +130,7 @@ pub enum TaskKind {
     Pose,
 }
 
-/// A pose in the world.
+/// A pose in the world, or in the link that something is put on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table such as { xyz = [0, 0, 0], rpy = [0, 0, 0] }")]
@@ -140,7 +154,7 @@ impl Default for Mount {
 }
 
 impl Mount {
-    fn is_identity(&self) -> bool {
+    pub(super) fn is_identity(&self) -> bool {
         *self == Self::default()
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::expression::evaluate;
+use crate::math::evaluate;
 
 /// A finite number, written as a number or as an expression in pi (`"9*pi/10"`).
 ///

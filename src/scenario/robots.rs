@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use super::document::read_bounded;
 use super::error::{ErrorKind, Place, ScenarioError, suggestion};
 use super::files;
-use crate::robot::{MAX_BYTES, ReadError, Robot, UrdfOptions, embedded};
+use crate::robot::{Diagnostic, MAX_BYTES, ReadError, Robot, Severity, UrdfOptions, embedded};
 
-/// Where a robot's URDF comes from.
+/// Where a robot comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RobotSource {
     /// Embedded in the library, by name.
     Embedded(String),
-    /// A file.
+    /// A file: URDF, or a Denavit-Hartenberg table in TOML.
     File(PathBuf),
 }
 
@@ -53,7 +53,7 @@ impl RobotSource {
     /// [`ReadError`] where the file can not be read, or no robot can be made of it.
     pub fn read(&self, options: &UrdfOptions) -> Result<Robot, ReadError> {
         match self {
-            Self::File(path) => Robot::from_urdf_file(path, options),
+            Self::File(path) => Robot::from_file(path, options),
             Self::Embedded(name) => {
                 let text = embedded::text(name).unwrap_or_default();
                 Robot::from_urdf_with(text, options)
@@ -74,16 +74,16 @@ impl RobotSource {
         Place::of_line(Some(self.label()), &text, line, column)
     }
 
-    /// Returns the refusal that a failed [`RobotSource::read`] means, with its place in the URDF.
+    /// Returns the refusal that a failed [`RobotSource::read`] means, with its place in the file.
     pub fn refusal(&self, error: &ReadError) -> ScenarioError {
-        let ReadError::Urdf { error, .. } = error else {
+        if matches!(error, ReadError::File { .. }) {
             return ScenarioError::of_file(Path::new(&self.label()), error.to_string());
-        };
-        let errors =
-            error.diagnostics().iter().filter(|d| d.severity == crate::robot::Severity::Error).count();
+        }
+        let is_error = |found: &&Diagnostic| found.severity == Severity::Error;
+        let errors = error.diagnostics().iter().filter(is_error).count();
         let more =
             if errors > 1 { format!(" ({errors} errors; `robot check` lists them)") } else { String::new() };
-        let Some(first) = error.first() else {
+        let Some(first) = error.diagnostics().iter().find(is_error) else {
             return ScenarioError::new(ErrorKind::Robot, error.to_string());
         };
         let place = self.place(first.line, first.column);

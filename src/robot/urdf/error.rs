@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::robot::{Diagnostic, Severity};
+use crate::robot::diagnostic::{first_error, more, summary};
+use crate::robot::{DhError, Diagnostic, Severity};
 
 /// Why no robot can be made of a text: every finding, with its place.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -38,19 +39,6 @@ impl UrdfError {
     }
 }
 
-fn first_error(diagnostics: &[Diagnostic]) -> Option<&Diagnostic> {
-    diagnostics.iter().find(|found| found.severity == Severity::Error)
-}
-
-fn summary(diagnostics: &[Diagnostic]) -> String {
-    match first_error(diagnostics) {
-        Some(first) => {
-            format!("line {}, column {}: {}{}", first.line, first.column, first.message, more(diagnostics))
-        }
-        None => "the URDF can not be read".to_owned(),
-    }
-}
-
 /// Why no robot could be read from a file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -66,12 +54,20 @@ pub enum ReadError {
         source: io::Error,
     },
     /// The file is read, but no robot can be made of it.
-    #[error("{}", placed(.path, .error))]
+    #[error("{}", placed(.path, .error.diagnostics(), .error))]
     Urdf {
         /// The file.
         path: PathBuf,
         /// Why.
         error: UrdfError,
+    },
+    /// The file is read, but its Denavit-Hartenberg table makes no robot.
+    #[error("{}", placed(.path, .error.diagnostics(), .error))]
+    Dh {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: DhError,
     },
 }
 
@@ -80,25 +76,26 @@ impl ReadError {
         let directory = path.is_relative().then(|| std::env::current_dir().ok()).flatten();
         ReadError::File { path: path.to_owned(), directory, source }
     }
-}
 
-/// Writes `file:line:column: message`.
-fn placed(path: &Path, error: &UrdfError) -> String {
-    let path = path.display();
-    match error.first() {
-        Some(first) => {
-            let more = more(&error.diagnostics);
-            format!("{path}:{}:{}: {}{more}", first.line, first.column, first.message)
+    /// Everything that was found in the file, by place; nothing where it could not be read at all.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        match self {
+            ReadError::File { .. } => &[],
+            ReadError::Urdf { error, .. } => error.diagnostics(),
+            ReadError::Dh { error, .. } => error.diagnostics(),
         }
-        None => format!("{path}: {error}"),
     }
 }
 
-fn more(diagnostics: &[Diagnostic]) -> String {
-    match diagnostics.iter().filter(|found| found.severity == Severity::Error).count() {
-        0 | 1 => String::new(),
-        2 => " (and 1 more error)".to_owned(),
-        n => format!(" (and {} more errors)", n - 1),
+/// Writes `file:line:column: message`.
+fn placed(path: &Path, found: &[Diagnostic], error: &impl std::fmt::Display) -> String {
+    let path = path.display();
+    match first_error(found) {
+        Some(first) => {
+            let more = more(found);
+            format!("{path}:{}:{}: {}{more}", first.line, first.column, first.message)
+        }
+        None => format!("{path}: {error}"),
     }
 }
 

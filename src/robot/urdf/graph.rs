@@ -8,6 +8,7 @@ use super::joint::RawJoint;
 use super::link::RawLink;
 use super::mimic;
 use super::report::Report;
+use crate::robot::displacement::displacement;
 use crate::robot::model::Stray;
 use crate::robot::names::{quote, short_list};
 use crate::robot::{Defect, Joint, JointKind, Limits, Link, Mimic, Robot};
@@ -255,14 +256,12 @@ fn build(
         let raw = &raw_links[old];
         links.push(Link { name: raw.name.clone(), parent_joint, defect: raw.defect.clone() });
     }
-    let link_by_name = links.iter().enumerate().map(|(index, link)| (link.name.clone(), index)).collect();
     let strays = raw_joints
         .into_iter()
         .zip(&joint_of)
         .filter(|(_, placed)| placed.is_none())
         .map(|(raw, _)| stray(raw));
-    let strays = strays.collect();
-    Robot { name, links, joints, strays, link_by_name, diagnostics: Vec::new() }
+    Robot { strays: strays.collect(), ..Robot::assembled(name, links, joints) }
 }
 
 fn joint(
@@ -282,11 +281,12 @@ fn joint(
         limits: limits(raw),
         mimic: None,
         defect: raw.defect.clone(),
+        angles: angles(raw),
     };
     match *motion {
         mimic::Motion::Own => {}
         mimic::Motion::Still { at } => {
-            joint.origin *= displacement(joint.kind, joint.axis, at);
+            joint.place(joint.origin * displacement(joint.kind, joint.axis, at));
             joint.kind = JointKind::Fixed;
         }
         // A driver without a place in the tree is defective, and then so is its follower.
@@ -312,7 +312,17 @@ fn origin(raw: &RawJoint) -> IsometryMatrix3<f64> {
 fn axis(raw: &RawJoint) -> Vector3<f64> {
     let xyz = raw.read.as_ref().map_or([1.0, 0.0, 0.0], |read| read.axis.xyz.0);
     let axis = Vector3::from(xyz);
+    // A vector that is as long as rounding lets a unit vector be keeps its bits.
+    if (axis.norm() - 1.0).abs() <= 2.0 * f64::EPSILON {
+        return axis;
+    }
     axis.try_normalize(0.0).unwrap_or_else(Vector3::x)
+}
+
+/// Roll, pitch and yaw, where the file gives the orientation so.
+fn angles(raw: &RawJoint) -> Option<[f64; 3]> {
+    let read = raw.read.as_ref().filter(|_| raw.quaternion.is_none());
+    read.map(|read| read.origin.rpy.0)
 }
 
 fn limits(raw: &RawJoint) -> Limits {
@@ -321,13 +331,6 @@ fn limits(raw: &RawJoint) -> Limits {
             Limits { lower: read.limit.lower, upper: read.limit.upper, velocity: read.limit.velocity }
         }
         _ => Limits::UNLIMITED,
-    }
-}
-
-fn displacement(kind: JointKind, axis: Vector3<f64>, value: f64) -> IsometryMatrix3<f64> {
-    match kind {
-        JointKind::Prismatic => IsometryMatrix3::from_parts((axis * value).into(), Rotation3::identity()),
-        _ => IsometryMatrix3::from_parts(Translation3::identity(), Rotation3::new(axis * value)),
     }
 }
 

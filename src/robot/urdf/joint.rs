@@ -135,7 +135,7 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
         self.mimic();
         if matches!(self.joint.kind, Some(JointKind::Floating | JointKind::Planar | JointKind::Spherical)) {
             let kind = self.joint.kind.map_or("", JointKind::as_str);
-            self.note(self.joint.offset, &format!("it is {kind}: no chain can pass through it"));
+            self.note(self.joint.offset, &format!("it is {kind}: no chain can pass through it, unless it is locked"));
         }
         self.joint
     }
@@ -276,7 +276,7 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
     fn axis(&mut self) {
         let Some(node) = self.child(Known::AXIS) else { return };
         if !self.joint.is_movable() {
-            return;
+            return self.normal(node);
         }
         let Some(attribute) = element::attribute(node, "xyz") else {
             return self.fail(element::offset(node), "its `<axis>` has no `xyz`");
@@ -295,6 +295,14 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
             );
         }
         let _ = write!(self.joint.values, "<axis xyz=\"{text}\"/>");
+    }
+
+    /// The axis of a planar joint is the plane's normal. No chain needs it, so that a bad one spoils nothing.
+    fn normal(&mut self, node: Node<'a, 'i>) {
+        let normal = element::attribute(node, "xyz").and_then(|xyz| number::vector::<3>(xyz.value()).ok());
+        if let Some([x, y, z]) = normal.filter(|_| self.joint.kind == Some(JointKind::Planar)) {
+            let _ = write!(self.joint.values, "<axis xyz=\"{x:?} {y:?} {z:?}\"/>");
+        }
     }
 
     fn mimic(&mut self) {

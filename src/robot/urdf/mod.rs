@@ -17,7 +17,7 @@ mod mimic;
 mod number;
 mod outline;
 mod places;
-mod report;
+pub(super) mod report;
 mod values;
 
 use std::fs::File;
@@ -77,15 +77,29 @@ pub(super) fn read_bytes(bytes: &[u8], options: &UrdfOptions) -> Result<Robot, U
     read_text(encoding::decode(bytes)?, options)
 }
 
-/// Reads a robot from a file, of which never more than the size cap is taken into memory.
+/// Reads a robot from a file.
 pub(super) fn read_file(path: &Path, options: &UrdfOptions) -> Result<Robot, ReadError> {
+    read_named_bytes(path, &bytes_of(path)?, options)
+}
+
+/// Returns the bytes of a file, of which never more than the size cap and one byte is taken into memory.
+pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, ReadError> {
     let file_error = |source| ReadError::file(path, source);
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(file_error)?;
     file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(file_error)?;
+    Ok(bytes)
+}
+
+/// Reads a robot from the bytes of a file.
+pub(super) fn read_named_bytes(
+    path: &Path,
+    bytes: &[u8],
+    options: &UrdfOptions,
+) -> Result<Robot, ReadError> {
     let mut options = options.clone();
     if options.name.is_none() {
         options.name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     }
-    read_bytes(&bytes, &options).map_err(|error| ReadError::Urdf { path: path.to_owned(), error })
+    read_bytes(bytes, &options).map_err(|error| ReadError::Urdf { path: path.to_owned(), error })
 }

@@ -24,10 +24,10 @@ pub struct ExpressionError {
 /// [`ExpressionError`] with the column of the first character that does not fit, or where the value is not finite.
 ///
 /// ```
-/// let angle = kinstep::scenario::evaluate("9*pi/10")?;
+/// let angle = kinstep::math::evaluate("9*pi/10")?;
 /// assert_eq!(angle, 9.0 * std::f64::consts::PI / 10.0);
-/// assert_eq!(kinstep::scenario::evaluate("2*(pi").unwrap_err().column, 6);
-/// # Ok::<(), kinstep::scenario::ExpressionError>(())
+/// assert_eq!(kinstep::math::evaluate("2*(pi").unwrap_err().column, 6);
+/// # Ok::<(), kinstep::math::ExpressionError>(())
 /// ```
 pub fn evaluate(text: &str) -> Result<f64, ExpressionError> {
     let mut reader = Reader { text, rest: text.char_indices().peekable(), depth: 0 };

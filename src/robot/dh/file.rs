@@ -1,0 +1,171 @@
+//! Tables as TOML files.
+
+use super::table::{DhConvention, DhError, DhRow, DhTable};
+use crate::robot::names::{list, quote};
+use crate::robot::toml_table::{Entries, real, read_toml, wrong_type};
+use crate::robot::urdf::report::Report;
+use crate::robot::{JointKind, Limits};
+
+const KEYS: [&str; 7] = ["name", "base", "convention", "joint", "planar", "limits", "velocity"];
+const ROW_KEYS: [&str; 9] = ["name", "link", "kind", "a", "alpha", "d", "theta", "limits", "velocity"];
+const KINDS: [JointKind; 4] =
+    [JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic, JointKind::Fixed];
+
+impl DhTable {
+    /// Returns the table in a TOML text.
+    ///
+    /// At the top: `name` of the robot (empty unless given), `base` (the first link, default `base`), `convention` (`"standard"` or
+    /// `"modified"`), and the rows as `[[joint]]`, each with `a`, `alpha`, `d`, `theta` (0 unless given; angles in rad or
+    /// as expressions in pi), `kind` (`"revolute"`, `"continuous"`, `"prismatic"`, `"fixed"`; revolute with `limits`,
+    /// continuous without, unless given), `limits = [lower, upper]`, `velocity`, `name` of the joint (default `joint1`,
+    /// `joint2`, ...) and of the `link` with the row's frame (default `link1`, ..., and `tip` for the last). Or, for an arm
+    /// in the plane, `planar = [1.0, 0.8]` with the lengths of its links, and `limits` and `velocity` of all joints.
+    ///
+    /// # Errors
+    /// [`DhError::Text`] with everything that is wrong, by place.
+    pub fn from_toml(text: &str) -> Result<DhTable, DhError> {
+        let (table, found) = read_toml(text, read);
+        table.ok_or(DhError::Text(found))
+    }
+}
+
+fn read(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhTable> {
+    if let Some(key) = ["arm", "sigma", "formula"].into_iter().find(|key| file.value(key).is_some()) {
+        let cause = format!(
+            "a table of a robot has no key `{key}`: this looks like a scenario or a file of formulas, which \
+             `kinstep plan` and `kinstep formula check` read"
+        );
+        report.error(file.place(key), cause);
+        return None;
+    }
+    file.check_keys("a table of a robot", &KEYS, report);
+    let name = file.text("name", report).unwrap_or_default().to_owned();
+    let base = file.text("base", report).unwrap_or("base").to_owned();
+    let (convention, rows) = match (file.value("planar"), file.value("joint")) {
+        (Some(_), None) => (DhConvention::Modified, planar(file, report)?),
+        (None, Some(value)) => {
+            let Some(entries) = value.get_ref().as_array() else {
+                wrong_type("joint", "a list of rows, each begun by a line [[joint]]", value, report);
+                return None;
+            };
+            for key in ["limits", "velocity"] {
+                if file.value(key).is_some() {
+                    report.error(file.place(key), format!("`{key}` belongs into the rows, or beside `planar`"));
+                }
+            }
+            let convention = convention(file, report);
+            let count = entries.len();
+            let rows = entries.iter().enumerate().filter_map(|(index, entry)| {
+                let Some(table) = entry.get_ref().as_table() else {
+                    wrong_type("joint", "rows that are tables", entry, report);
+                    return None;
+                };
+                row(&Entries { table, offset: entry.span().start }, index, count, report)
+            });
+            (convention?, rows.collect())
+        }
+        (Some(second), Some(_)) => {
+            report.error(second.span().start, "`planar` and `joint` both describe the arm; keep one of them");
+            return None;
+        }
+        (None, None) => {
+            let cause = "there is no arm in this file: write rows `[[joint]]` with a, alpha, d and theta, and \
+                         `convention`, or `planar` with the lengths of the links";
+            report.error(0, cause);
+            return None;
+        }
+    };
+    if !rows.iter().any(|row| row.kind.is_movable()) {
+        report.error(file.place("joint"), "no row of the table moves");
+    }
+    Some(DhTable { name, base, convention, rows })
+}
+
+fn convention(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhConvention> {
+    let remedy = "\"standard\" is Rz(theta) Tz(d) Tx(a) Rx(alpha), \"modified\" (Craig) is \
+                  Rx(alpha) Tx(a) Rz(theta) Tz(d)";
+    if file.value("convention").is_none() {
+        report.error(file.place("joint"), format!("the key `convention` is missing: {remedy}"));
+        return None;
+    }
+    match file.text("convention", report)? {
+        "standard" => Some(DhConvention::Standard),
+        "modified" => Some(DhConvention::Modified),
+        other => {
+            let cause = format!("{} is no convention: {remedy}", quote(other));
+            report.error(file.place("convention"), cause);
+            None
+        }
+    }
+}
+
+fn planar(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<Vec<DhRow>> {
+    if file.value("convention").is_some() {
+        report.error(file.place("convention"), "`convention` is about rows; an arm given by `planar` has none");
+    }
+    let lengths = file.numbers("planar", report)?;
+    let limits = limits(file, report);
+    let kind = default_kind(file);
+    let mut rows = DhTable::planar("", &lengths).rows;
+    for row in rows.iter_mut().filter(|row| row.kind.is_movable()) {
+        (row.limits, row.kind) = (limits, kind);
+        if let Some(problem) = row.problem() {
+            report.error(file.place("limits"), problem);
+            return None;
+        }
+    }
+    Some(rows)
+}
+
+fn row(table: &Entries<'_, '_>, index: usize, count: usize, report: &mut Report<'_>) -> Option<DhRow> {
+    table.check_keys("a row", &ROW_KEYS, report);
+    let own = |key: &str, report: &mut Report<'_>, default: String| {
+        table.text(key, report).map_or(default, str::to_owned)
+    };
+    let joint = own("name", report, format!("joint{}", index + 1));
+    let default = if index + 1 == count { "tip".to_owned() } else { format!("link{}", index + 1) };
+    let link = own("link", report, default);
+    let kind = kind(table, report)?;
+    let [a, alpha, d, theta] = ["a", "alpha", "d", "theta"].map(|key| table.number(key, report));
+    let row = DhRow { joint, link, kind, a, alpha, d, theta, limits: limits(table, report) };
+    if let Some(problem) = row.problem() {
+        report.error(table.offset, format!("joint {}: {problem}", quote(&row.joint)));
+    }
+    Some(row)
+}
+
+fn default_kind(table: &Entries<'_, '_>) -> JointKind {
+    if table.value("limits").is_some() { JointKind::Revolute } else { JointKind::Continuous }
+}
+
+fn kind(table: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<JointKind> {
+    if table.value("kind").is_none() {
+        return Some(default_kind(table));
+    }
+    let word = table.text("kind", report)?;
+    let kind = KINDS.into_iter().find(|kind| kind.as_str() == word);
+    if kind.is_none() {
+        let words = KINDS.map(JointKind::as_str);
+        let suggestion = report.suggestion(word, words);
+        let cause = format!("{} is no kind of joint{suggestion}; rows are {}", quote(word), list(&words, "or"));
+        report.error(table.place("kind"), cause);
+    }
+    kind
+}
+
+fn limits(table: &Entries<'_, '_>, report: &mut Report<'_>) -> Limits {
+    let mut limits = Limits::UNLIMITED;
+    if let Some(value) = table.value("limits") {
+        match value.get_ref().as_array().map(|ends| ends.iter().collect::<Vec<_>>()).as_deref() {
+            Some([lower, upper]) => {
+                limits.lower = real("limits[0]", lower, report).unwrap_or(limits.lower);
+                limits.upper = real("limits[1]", upper, report).unwrap_or(limits.upper);
+            }
+            _ => wrong_type("limits", "two numbers, [lower, upper]", value, report),
+        }
+    }
+    if let Some(value) = table.value("velocity") {
+        limits.velocity = real("velocity", value, report).unwrap_or(limits.velocity);
+    }
+    limits
+}

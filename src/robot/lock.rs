@@ -1,0 +1,173 @@
+//! Joints held at a position: from then on constants.
+
+use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
+use thiserror::Error;
+
+use super::displacement::displacement;
+use super::{Defect, Joint, JointKind, Limits, Robot, names};
+
+/// Why a joint can not be locked.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum LockError {
+    /// A joint that the robot does not have.
+    #[error("the robot has no joint {} to lock{}{}", names::quote(.name), names::suggestion(.nearest), .hint)]
+    UnknownJoint {
+        /// The name asked for.
+        name: String,
+        /// The joints whose names look like it, nearest first.
+        nearest: Vec<String>,
+        /// What else the name may be.
+        hint: String,
+    },
+    /// A joint whose values could not be read.
+    #[error("joint {} can not be locked, because it is defective (line {}): {}", names::quote(.joint), .defect.line, .defect.reason)]
+    Defective {
+        /// The joint.
+        joint: String,
+        /// What is wrong with it.
+        defect: Defect,
+    },
+    /// A joint that does not move in the first place.
+    #[error("joint {} is fixed already; lock a joint that moves", names::quote(.joint))]
+    Fixed {
+        /// The joint.
+        joint: String,
+    },
+    /// Too few or too many numbers for the kind of joint.
+    #[error("joint {} is {kind} and is locked at {}, not at {count} numbers", names::quote(.joint), wanted(*.kind))]
+    Count {
+        /// The joint.
+        joint: String,
+        /// Its type.
+        kind: JointKind,
+        /// How many numbers were given.
+        count: usize,
+    },
+    /// A position that the joint does not reach, or no number.
+    #[error("joint {} can not be locked at {value}: it moves between {lower} and {upper}", names::quote(.joint))]
+    OutsideLimits {
+        /// The joint.
+        joint: String,
+        /// The position asked for [rad or m].
+        value: f64,
+        /// The smallest allowed.
+        lower: f64,
+        /// The largest allowed.
+        upper: f64,
+    },
+}
+
+fn wanted(kind: JointKind) -> &'static str {
+    if kind.is_movable() {
+        "one number"
+    } else {
+        "a finite pose, six numbers x y z roll pitch yaw, or at 0 for none"
+    }
+}
+
+impl Robot {
+    /// Returns the robot with a joint held still: chains pass through it as through a fixed joint, and joints that
+    /// follow it stand still with it.
+    ///
+    /// A joint with one degree of freedom is held at one position \[rad\] or \[m\], within its limits. A floating, planar
+    /// or spherical joint is held at the pose of its child, `x y z roll pitch yaw` \[m, rad\] as in URDF, after its
+    /// origin; the single number 0 is the pose that moves nothing.
+    ///
+    /// # Errors
+    /// [`LockError`]: no such joint (with the nearest names), a defective or a fixed one, too few or too many numbers, or
+    /// a position outside the limits.
+    ///
+    /// ```
+    /// use kinstep::robot::embedded;
+    /// let robot = embedded::get("panda")?.with_locked("panda_joint1", &[0.5])?;
+    /// assert_eq!(robot.chain("panda_link0", "panda_hand")?.dof(), 6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_locked(&self, joint: &str, values: &[f64]) -> Result<Robot, LockError> {
+        let index = self.joint_index(joint).ok_or_else(|| self.no_such_joint(joint))?;
+        let own = &self.joints[index];
+        if let Some(defect) = own.defect.clone() {
+            return Err(LockError::Defective { joint: joint.to_owned(), defect });
+        }
+        if own.kind == JointKind::Fixed {
+            return Err(LockError::Fixed { joint: joint.to_owned() });
+        }
+        let held = held(own, values)?;
+        let mut robot = self.clone();
+        fix(&mut robot.joints[index], &held);
+        if let [position] = *values {
+            robot.still_followers(index, position);
+        }
+        Ok(robot)
+    }
+
+    /// Fixes the joints that follow a joint which stands at `position`.
+    fn still_followers(&mut self, driver: usize, position: f64) {
+        for joint in &mut self.joints {
+            if let Some(mimic) = joint.mimic.filter(|mimic| mimic.driver == driver) {
+                let own = mimic.multiplier * position + mimic.offset;
+                let held = displacement(joint.kind, joint.axis, own);
+                fix(joint, &held);
+            }
+        }
+    }
+
+    /// The place of a joint among [`Robot::joints`].
+    pub(super) fn joint_index(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.name == name)
+    }
+
+    /// The joints whose names look like `name`, nearest first.
+    pub(super) fn joints_like(&self, name: &str) -> Vec<String> {
+        let all = self.joints.iter().map(|joint| joint.name.as_str());
+        names::nearest(name, all).into_iter().map(str::to_owned).collect()
+    }
+
+    fn no_such_joint(&self, name: &str) -> LockError {
+        if let Some(stray) = self.strays.iter().find(|stray| stray.name == name) {
+            return LockError::Defective { joint: name.to_owned(), defect: stray.defect.clone() };
+        }
+        let above = self.link(name).and_then(|link| link.parent_joint).map(|joint| &self.joints[joint].name);
+        let nearest = self.joints_like(name);
+        let hint = match above {
+            Some(above) => {
+                format!("; {} is a link, the joint above it is {}", names::quote(name), names::quote(above))
+            }
+            None if nearest.is_empty() => {
+                let moving = self.joints.iter().filter(|joint| joint.kind != JointKind::Fixed);
+                let moving: Vec<&str> = moving.map(|joint| joint.name.as_str()).collect();
+                format!("; the joints that move are {}", names::short_list(&moving, "and"))
+            }
+            None => String::new(),
+        };
+        LockError::UnknownJoint { name: name.to_owned(), nearest, hint }
+    }
+}
+
+/// The motion at which a joint is held.
+fn held(joint: &Joint, values: &[f64]) -> Result<IsometryMatrix3<f64>, LockError> {
+    let count = || LockError::Count { joint: joint.name.clone(), kind: joint.kind, count: values.len() };
+    match *values {
+        [value] if joint.kind.is_movable() => {
+            let Limits { lower, upper, .. } = joint.limits;
+            if !joint.limits.contains(value) {
+                return Err(LockError::OutsideLimits { joint: joint.name.clone(), value, lower, upper });
+            }
+            Ok(displacement(joint.kind, joint.axis, value))
+        }
+        [0.0] if !joint.kind.is_movable() => Ok(IsometryMatrix3::identity()),
+        [x, y, z, roll, pitch, yaw] if !joint.kind.is_movable() && values.iter().all(|v| v.is_finite()) => {
+            let turn = Rotation3::from_euler_angles(roll, pitch, yaw);
+            Ok(IsometryMatrix3::from_parts(Translation3::from(Vector3::new(x, y, z)), turn))
+        }
+        _ => Err(count()),
+    }
+}
+
+fn fix(joint: &mut Joint, held: &IsometryMatrix3<f64>) {
+    joint.place(joint.origin * held);
+    joint.kind = JointKind::Fixed;
+    joint.limits = Limits::UNLIMITED;
+    joint.mimic = None;
+}
