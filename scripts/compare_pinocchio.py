@@ -3,11 +3,15 @@
 Usage:  python scripts/compare_pinocchio.py --kinstep target/debug/kinstep [--count N] [--seed S] [PATH ...]
 
 PATH is a URDF file or a folder that is searched for *.urdf; without one, the URDF files of the package
-example-robot-data are taken. N (default 200) random (base, tip, q) are drawn: links uniformly, any direction through
-the tree, q uniform within limits (at most ten radians or metres from zero). For each, position, rotation, joints and
-Jacobian are compared. Printed: one line per file, every disagreement, every refusal with its sentence, and the worst
-differences. Exit code 1 if anything disagrees by more than the tolerance (1e-12, times the size of the robot where it
-is larger than a metre) or if a chain of fixed, revolute, continuous and prismatic joints was refused.
+example-robot-data are taken. Every file that Pinocchio reads has to load. N (default 200) random (base, tip, q) are drawn, robot after robot:
+links uniformly, any direction through the tree, q uniform within limits (at most ten radians or metres from zero). For
+each, position, rotation, joints and Jacobian are compared. Printed: one line per file, every disagreement, every refusal
+with its sentence, and the worst differences. Exit code 1 if a file is not loaded, if anything disagrees by more than the
+tolerance (1e-12, times the size of the robot where it is larger than a metre), or if a chain of fixed, revolute,
+continuous and prismatic joints was refused.
+
+With example-robot-data 6.0.0 and Pinocchio 4.1.0: 68 of 69 files load (ur3.urdf holds no link, and Pinocchio does not read
+it either), 200 of 200 agree, the worst difference is 3.3e-15 (seed 0; 4.7e-15 among 1,000 each of the seeds 1, 2 and 3).
 
 Needs: Python 3.10+, numpy, pin and, without PATH, example-robot-data (see requirements.txt).
 """
@@ -69,6 +73,16 @@ def ask(kinstep, file, base, tip, q):
     return answer, None
 
 
+def refusal_of(kinstep, file):
+    """None if the program loads the file, else its first sentence about it."""
+    done = subprocess.run([kinstep, "robot", "check", str(file), "--json"], capture_output=True, text=True, timeout=60, check=False)
+    answer = json.loads(done.stdout)
+    if answer.get("links"):
+        return None
+    problems = answer.get("problems") or [answer.get("error", {})]
+    return f"not loaded: {problems[0].get('message')}"
+
+
 def differences(answer, expected):
     """{"position": ..., "rotation": ..., "jacobian": ...}: the largest absolute difference of each."""
     found = {}
@@ -90,19 +104,28 @@ def main():
     files = urdf_files(arguments.paths)
     generator = random.Random(arguments.seed)
     worst, failures, tally = collections.Counter(), [], collections.Counter()
-    for index, file in enumerate(files):
-        share = arguments.count // len(files) + (index < arguments.count % len(files))
+    robots = []
+    for file in files:
+        problem = refusal_of(arguments.kinstep, file)
+        tally["loaded" if problem is None else "not loaded"] += 1
         try:
-            robot = oracle.PinocchioRobot(file)
+            robots.append((file, oracle.PinocchioRobot(file)))
         except (ValueError, oracle.ElementTree.ParseError) as error:
-            print(f"{file.name}: Pinocchio does not read it ({str(error).strip().splitlines()[0][:120]})")
+            reason = str(error).strip().splitlines()[0][:120]
+            print(f"{file.name}: Pinocchio does not read it ({reason}); here: {problem or 'loaded'}")
             tally["unread by Pinocchio"] += 1
-            continue
-        agreed = 0
-        for _ in range(share):
-            drawn = draw(generator, robot)
+        else:
+            failures += [] if problem is None else [f"{file.name}: {problem}"]
+    # Round after round over all robots, so that one without a chain leaves its share to the others.
+    drawn_of, agreed_of = collections.Counter(), collections.Counter()
+    waiting = list(robots)
+    while waiting and sum(drawn_of.values()) < arguments.count:
+        for file, robot in list(waiting):
+            drawn = draw(generator, robot) if sum(drawn_of.values()) < arguments.count else None
             if drawn is None:
+                waiting.remove((file, robot))
                 continue
+            drawn_of[file] += 1
             base, tip, drivers, q, known = drawn
             answer, refusal = ask(arguments.kinstep, file, base, tip, q)
             if refusal is not None:
@@ -118,10 +141,11 @@ def main():
             elif max(found.values()) > arguments.tolerance * size:
                 failures.append(f"{file.name} {base} -> {tip}, q = {q}: differs by {found}")
             else:
-                agreed += 1
+                agreed_of[file] += 1
                 worst = collections.Counter({key: max(worst[key], found[key]) for key in found})
-        tally["agreed"] += agreed
-        print(f"{file.name}: {agreed} of {share} agree")
+    for file, _ in robots:
+        print(f"{file.name}: {agreed_of[file]} of {drawn_of[file]} agree")
+    tally["agreed"] = sum(agreed_of.values())
     print("\n".join(failures))
     print(f"{dict(tally)}; worst difference among those that agree: {dict(worst)}")
     return 1 if failures else 0

@@ -172,3 +172,148 @@ fn a_pose_that_is_no_number_is_refused_rather_than_written_as_null() {
         desk.run(&arguments("1e300,1")).expect(0);
     }
 }
+
+/// A mobile arm: a floating base, two joints, and elements that kinematics ignores.
+const MOBILE: &str = r#"<robot name="mobile">
+  <link name="world"/><link name="base"/><link name="arm"/><link name="left"/><link name="right"/>
+  <joint name="float" type="floating"><parent link="world"/><child link="base"/></joint>
+  <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+    <limit lower="0.5" upper="1.5" effort="1" velocity="1"/></joint>
+  <joint name="grip" type="prismatic"><parent link="arm"/><child link="left"/><origin xyz="1 0 0"/><axis xyz="0 1 0"/>
+    <limit lower="0" upper="0.1" effort="1" velocity="1"/></joint>
+  <joint name="follow" type="prismatic"><parent link="arm"/><child link="right"/><origin xyz="1 0 0"/>
+    <axis xyz="0 -1 0"/><limit lower="0" upper="0.1" effort="1" velocity="1"/><mimic joint="grip"/></joint>
+  <transmission name="t"/><gazebo/>
+</robot>
+"#;
+
+#[test]
+fn a_robot_is_shown_as_a_tree_with_its_chains_and_a_command_that_works() {
+    let desk = Desk::new(&[("mobile.urdf", MOBILE)]);
+    let text = desk.run(&["robot", "show", "mobile.urdf"]).expect(0).out;
+    let expected = "\
+mobile: 5 links, 4 joints that move (1 of them by following another), 0 fixed
+
+link     joint   type                     lower  upper  velocity
+world
+base     float   floating                 -      -      -
+arm      turn    revolute                 0.5    1.5    1
+├ left   grip    prismatic                0      0.1    1
+└ right  follow  prismatic, follows grip  0      0.1    1
+";
+    let plain = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(plain(&text).starts_with(&plain(expected)), "{text}");
+    assert!(plain(&text).contains("base left 2 1.1 turn, grip base right 2 1.1 turn, grip"), "{text}");
+    assert!(text.contains("held still: --lock float=0"), "{text}");
+    let command = text.lines().find(|line| line.starts_with("  kinstep ")).unwrap();
+    let words: Vec<&str> = command.split_whitespace().skip(1).collect();
+    desk.run(&words).expect(0);
+    let card = desk.run(&["robot", "show", "mobile.urdf", "--json"]).expect(0).json();
+    assert_eq!(card["chains"][0]["joints"], json!(["turn", "grip"]));
+    assert_eq!((&card["chains"][0]["base"], &card["chains"][0]["dof"]), (&json!("base"), &json!(2)));
+}
+
+#[test]
+fn what_was_ignored_is_said_when_asked() {
+    let desk = Desk::new(&[("mobile.urdf", MOBILE)]);
+    assert_eq!(desk.run(&["robot", "show", "mobile.urdf"]).expect(0).err, "");
+    for command in
+        [&["robot", "show", "mobile.urdf", "-v"][..], &["robot", "export", "mobile.urdf", "--verbose"]]
+    {
+        let err = desk.run(command).expect(0).err;
+        assert!(err.contains("mobile.urdf:11:3: note: ignored"), "{err}");
+        assert!(err.contains("`<transmission>` (1), `<gazebo>` (1)"), "{err}");
+    }
+}
+
+#[test]
+fn joints_are_locked_calibrated_and_tooled_on_the_command_line() {
+    let calibration = "[joint.turn]\nzero = 0.25\nxyz = [0, 0, 0.5]\n";
+    let desk = Desk::new(&[("mobile.urdf", MOBILE), ("mine.toml", calibration)]);
+    let fk = |more: &[&str]| {
+        let asked = ["robot", "fk", "mobile.urdf", "--base", "world", "--tip", "arm", "--json"];
+        desk.run(&[&asked[..], more].concat())
+    };
+    let error = fk(&["--q", "1"]).expect(3).error();
+    assert!(error["message"].as_str().unwrap().contains("hold the joint still with --lock"), "{error}");
+    let position = |more: &[&str]| numbers(&fk(more).expect(0).json()["position"]);
+    assert_eq!(position(&["--q", "1", "--lock", "float=0"]), [0.0, 0.0, 0.0]);
+    assert_eq!(position(&["--q", "1", "--lock", "float=1 2 3 0 0 pi/2"]), [1.0, 2.0, 3.0]);
+    let tool = ["--tool", "1 0 0 0 0 0"];
+    let moved =
+        position(&[&["--q", "1", "--lock", "float=0", "--calibration", "mine.toml"][..], &tool].concat());
+    let expected = [1.25_f64.cos(), 1.25_f64.sin(), 0.5];
+    assert!(moved.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{moved:?}");
+    let still = position(&[&["--lock", "turn=1", "--lock", "float=0"][..], &tool].concat());
+    assert!((still[0] - 1.0_f64.cos()).abs() < 1e-15, "{still:?}");
+    for (arguments, code, said) in [
+        (&["--lock", "float"][..], 2, "write JOINT=VALUE"),
+        (&["--lock", "float=x"], 2, "'x' is not known"),
+        (&["--lock", "flota=0"], 3, "did you mean `float`?"),
+        (&["--lock", "turn=2"], 3, "it moves between 0.5 and 1.5"),
+        (
+            &["--lock", "float=0", "--q", "1", "--tool", "1 2 3"],
+            2,
+            "expected 6 numbers x y z roll pitch yaw, got 3",
+        ),
+        (&["--calibration", "nowhere.toml"], 6, "there is no such file"),
+        (&["--calibration", "mobile.urdf"], 3, "not TOML"),
+    ] {
+        let error = fk(arguments).expect(code).error();
+        assert!(error["message"].as_str().unwrap().contains(said), "{said}: {error}");
+    }
+}
+
+#[test]
+fn a_robot_written_as_urdf_is_the_same_robot() {
+    let desk = Desk::new(&[("arm.toml", "planar = [1.0, 0.5]\nname = \"two\"\n"), ("mobile.urdf", MOBILE)]);
+    desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf"]).expect(0);
+    desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf"]).expect(6);
+    desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf", "--force"]).expect(0);
+    let text = desk.run(&["robot", "export", "arm.toml"]).expect(0).out;
+    assert_eq!(std::fs::read_to_string(desk.path("arm.urdf")).unwrap(), text);
+    assert_eq!(desk.run(&["robot", "export", "arm.toml", "--json"]).expect(0).json()["urdf"], json!(text));
+    desk.run(&["robot", "check", "arm.urdf"]).expect(0);
+    let fk = |file| {
+        let asked = ["robot", "fk", file, "--base", "base", "--tip", "tip", "--q", "0.3,-1", "--json"];
+        desk.run(&asked).expect(0).json()
+    };
+    assert_eq!(fk("arm.toml"), fk("arm.urdf"));
+    let locked = desk
+        .run(&["robot", "export", "mobile.urdf", "--lock", "float=0", "--lock", "grip=0.05"])
+        .expect(0)
+        .out;
+    assert!(!locked.contains("floating") && !locked.contains("prismatic"), "{locked}");
+    std::fs::write(desk.path("wrong.urdf"), MOBILE.replace("0 0 1", "0 0 0")).unwrap();
+    assert!(desk.run(&["robot", "export", "wrong.urdf"]).expect(3).err.contains("mend it first"));
+}
+
+#[test]
+fn a_robot_is_drawn_on_a_page_or_into_a_folder() {
+    let desk = Desk::new(&[("mobile.urdf", MOBILE)]);
+    let plot = |more: &[&str]| desk.run(&[&["robot", "show", "mobile.urdf"][..], more].concat());
+    plot(&["--plot", "page.svg", "--q", "turn=1"]).expect(0);
+    plot(&["--plot", "page.svg"]).expect(6);
+    plot(&["--plot", "page.svg", "--force", "--q=1,0.05"]).expect(0);
+    let page = std::fs::read_to_string(desk.path("page.svg")).unwrap();
+    assert!(page.contains("2  turn") && page.contains("1  float"), "joints are numbered and named");
+    let numbers = std::fs::read_to_string(desk.path("page.csv")).unwrap();
+    let left = format!(
+        "top,3  grip,{:.9},{:.9}",
+        1.0_f64.cos() - 0.05 * 1.0_f64.sin(),
+        1.0_f64.sin() + 0.05 * 1.0_f64.cos()
+    );
+    let short = |text: &str| text.trim_end_matches('0').to_owned();
+    assert!(numbers.lines().any(|line| line == short(&left)), "{left}:\n{numbers}");
+    plot(&["--plot", "pictures"]).expect(0);
+    assert_eq!(desk.names("pictures"), ["top.csv", "top.svg"], "a flat robot is drawn from above");
+    for (q, said) in [
+        ("1,2,3", "expected 2 (turn, grip), or some of them as NAME=VALUE, got 3"),
+        ("trun=1", "did you mean turn?"),
+        ("follow=1", "moves on its own"),
+        ("turn=x", "'x' is not known"),
+    ] {
+        let error = plot(&["--plot", "other.svg", "--q", q, "--json"]).expect(2).error();
+        assert!(error["message"].as_str().unwrap().contains(said), "{said}: {error}");
+    }
+}

@@ -54,7 +54,7 @@ Setting one of law.h and law.gain takes the other away.")]
         after_help = "Example:\n  kinstep formula show --difference 24,-5,-12,-6,-4,3 --denominator 48"
     )]
     Formula(FormulaCommand),
-    /// Look at robots: list, show, check, pose and Jacobian
+    /// Look at robots: list, show, draw, check, pose and Jacobian, write as URDF
     #[command(subcommand, after_help = "Example:\n  kinstep robot show panda")]
     Robot(RobotCommand),
     /// Print the JSON Schema of a kind of file
@@ -377,12 +377,15 @@ pub(super) enum RobotCommand {
     /// List the robots that come with the program
     #[command(after_help = "Example:\n  kinstep robot list")]
     List,
-    /// Show a robot's links, joints and limits
-    #[command(
-        after_help = "Examples:\n  kinstep robot show panda\n  kinstep robot show my_robot.urdf --json"
-    )]
-    Show(RobotFile),
-    /// Say everything that is wrong with a URDF file; exit 3 if anything is an error
+    /// Show a robot: its tree, limits and chains; or draw it
+    #[command(after_help = "\
+Examples:
+  kinstep robot show panda
+  kinstep robot show my_robot.urdf --json
+  kinstep robot show examples/dh/ur5e.toml
+  kinstep robot show panda --plot panda.svg --q panda_joint4=-pi/2,panda_joint6=pi/2")]
+    Show(RobotShow),
+    /// Say everything that is wrong with a URDF file or a table; exit 3 if anything is an error
     #[command(after_help = "Example:\n  kinstep robot check my_robot.urdf")]
     Check(RobotFile),
     /// Pose of a tip in a base
@@ -394,11 +397,51 @@ pub(super) enum RobotCommand {
         after_help = "Example:\n  kinstep robot jacobian planar4 --base base --tip tip --q 0,pi/2,0,0 --json"
     )]
     Jacobian(ChainArguments),
+    /// Write a robot as URDF: a table, or a URDF with its calibration and its locked joints in it
+    #[command(after_help = "\
+Examples:
+  kinstep robot export examples/dh/ur5e.toml > ur5e.urdf
+  kinstep robot export panda --calibration mine.toml --lock panda_finger_joint1=0 --urdf mine.urdf")]
+    Export(RobotExport),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RobotShow {
+    #[command(flatten)]
+    pub(super) file: RobotFile,
+
+    /// Draw the robot instead: into a folder, a file per view, or all on one page when the name ends in .svg; numbers go
+    /// beside as CSV
+    #[arg(long, value_name = "DIR|FILE")]
+    pub(super) plot: Option<PathBuf>,
+
+    /// Joint positions of the drawing in rad or m: one for each joint that moves on its own, or some as NAME=VALUE; the
+    /// others are 0
+    #[arg(long, value_name = "Q,...", allow_hyphen_values = true, requires = "plot")]
+    pub(super) q: Option<String>,
+
+    /// Replace drawings that are already there
+    #[arg(long, requires = "plot")]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RobotExport {
+    #[command(flatten)]
+    pub(super) file: RobotFile,
+
+    /// Write the URDF to this file; without it, or to -, it goes to standard output
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
+    pub(super) urdf: Option<PathBuf>,
+
+    /// Replace a file that is already there
+    #[arg(long, requires = "urdf")]
+    pub(super) force: bool,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct RobotFile {
-    /// A URDF file, or the name of a robot that comes with the program
+    /// A URDF file, a Denavit-Hartenberg table in TOML, or the name of a robot that comes with the program
     #[arg(value_name = "FILE")]
     pub(super) robot: String,
 
@@ -409,6 +452,19 @@ pub(super) struct RobotFile {
     /// Take every attribute that URDF does not know as an error
     #[arg(long)]
     pub(super) strict: bool,
+
+    /// A TOML file of corrections: tables [joint.NAME] with xyz, rpy, zero, reversed
+    #[arg(long, value_name = "FILE")]
+    pub(super) calibration: Option<PathBuf>,
+
+    /// Hold a joint still, at a position in rad or m, or a floating, planar or spherical one at "x y z roll pitch yaw" or
+    /// 0. May be given again
+    #[arg(long, value_name = "JOINT=VALUE")]
+    pub(super) lock: Vec<String>,
+
+    /// Say, on standard error, everything that was noted in the file, ignored elements included
+    #[arg(short, long)]
+    pub(super) verbose: bool,
 }
 
 #[derive(Debug, Args)]
@@ -427,6 +483,10 @@ pub(super) struct ChainArguments {
     /// Joint positions in path order in rad or m, separated by commas; expressions in pi are read
     #[arg(long, value_name = "Q,...", allow_hyphen_values = true)]
     pub(super) q: Option<String>,
+
+    /// Pose of a tool in the tip, "x y z roll pitch yaw" in m and rad: the chain then ends there
+    #[arg(long, value_name = "POSE", allow_hyphen_values = true)]
+    pub(super) tool: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, Args)]

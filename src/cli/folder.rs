@@ -43,6 +43,11 @@ impl Folder {
     }
 }
 
+/// Writes one file that is whole or not there.
+pub(super) fn write_file(path: &Path, replace: bool, text: &str) -> Result<(), Failure> {
+    write_whole(path, replace, |out| out.write_all(text.as_bytes())).map_err(|e| failure(&e))
+}
+
 fn failure(error: &WriteError) -> Failure {
     let file = match error {
         WriteError::Exists(path) | WriteError::Io { path, .. } => path.display().to_string(),

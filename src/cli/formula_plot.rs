@@ -1,4 +1,4 @@
-//! Figures of formulas as files: SVG, and the numbers beside it as CSV.
+//! Figures as files: SVG, and the numbers beside it as CSV.
 
 use std::path::Path;
 
@@ -19,8 +19,20 @@ pub(super) fn plot(path: &Path, force: bool, rows: &[(&str, &Analysis)]) -> Resu
         )));
     }
     let figures: Vec<Figure> = rows.iter().flat_map(|(id, analysis)| portrait(id, analysis)).collect();
+    let ids: Vec<&str> = rows.iter().map(|(id, _)| *id).collect();
+    draw(path, force, &ids.join(", "), &figures)
+}
+
+/// Writes figures into a folder, a file per figure, or, where the name ends in `.svg`, on one page of that title; returns
+/// the names written.
+pub(super) fn draw(
+    path: &Path,
+    force: bool,
+    title: &str,
+    figures: &[Figure],
+) -> Result<Vec<String>, Failure> {
     let is_page = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
-    if is_page { page(path, force, rows, &figures) } else { folder(path, force, &figures) }
+    if is_page { page(path, force, title, figures) } else { folder(path, force, figures) }
 }
 
 fn folder(path: &Path, force: bool, figures: &[Figure]) -> Result<Vec<String>, Failure> {
@@ -34,18 +46,12 @@ fn folder(path: &Path, force: bool, figures: &[Figure]) -> Result<Vec<String>, F
     write_all(path, force, &files)
 }
 
-fn page(
-    path: &Path,
-    force: bool,
-    rows: &[(&str, &Analysis)],
-    figures: &[Figure],
-) -> Result<Vec<String>, Failure> {
+fn page(path: &Path, force: bool, title: &str, figures: &[Figure]) -> Result<Vec<String>, Failure> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let beside = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-    let ids: Vec<&str> = rows.iter().map(|(id, _)| *id).collect();
     // One table of numbers for the page: the name of the figure goes before each line.
     let line = |name: &str, line: &str| format!("{name},{line}\n");
     let lines = |figure: &Figure| -> Vec<String> {
@@ -53,7 +59,7 @@ fn page(
     };
     let numbers = figures.iter().flat_map(lines).collect::<Vec<_>>().concat();
     let csv = Path::new(&name).with_extension("csv").to_string_lossy().into_owned();
-    write_all(beside, force, &[(name, sheet(&ids.join(", "), figures, 2)), (csv, numbers)])
+    write_all(beside, force, &[(name, sheet(title, figures, 2.min(figures.len()))), (csv, numbers)])
 }
 
 /// Writes files of a folder, and returns their paths.

@@ -16,6 +16,8 @@ mod plan;
 mod progress;
 mod reproduce;
 mod robot;
+mod robot_export;
+mod robot_show;
 mod schema;
 
 use std::ffi::OsString;

@@ -2,25 +2,27 @@
 
 use std::fmt::Write;
 
-use nalgebra::Vector6;
+use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector6};
 use serde::Serialize;
 
-use super::arguments::{ChainArguments, RobotCommand, RobotFile};
+use super::arguments::{ChainArguments, RobotCommand, RobotFile, RobotShow};
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
-use crate::report::{Table, short};
-use crate::robot::{Chain, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded};
-use crate::scenario::{RobotSource, evaluate};
+use super::robot_show::RobotCard;
+use super::{formula_plot, robot_export};
+use crate::report::Table;
+use crate::report::figure::robot_figures;
+use crate::robot::{Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded};
+use crate::scenario::{RobotSource, calibrated, evaluate, suggestion, tool_name};
 
 pub(super) fn run(command: &RobotCommand, output: &mut Output) -> Result<Exit, Failure> {
     match command {
         RobotCommand::List => output.show(&RobotList::new()?).map(|()| Exit::Done),
-        RobotCommand::Show(file) => output.show(&RobotCard::new(&read(file)?)).map(|()| Exit::Done),
+        RobotCommand::Show(arguments) => show(arguments, output),
         RobotCommand::Check(file) => check(file, output),
-        RobotCommand::Fk(arguments) => output.show(&Kinematics::new(arguments, false)?).map(|()| Exit::Done),
-        RobotCommand::Jacobian(arguments) => {
-            output.show(&Kinematics::new(arguments, true)?).map(|()| Exit::Done)
-        }
+        RobotCommand::Fk(arguments) => kinematics(arguments, false, output),
+        RobotCommand::Jacobian(arguments) => kinematics(arguments, true, output),
+        RobotCommand::Export(arguments) => robot_export::run(arguments, output),
     }
 }
 
@@ -28,9 +30,89 @@ fn options(file: &RobotFile) -> UrdfOptions {
     UrdfOptions { assume_unlimited: file.assume_unlimited, strict: file.strict, ..UrdfOptions::default() }
 }
 
-fn read(file: &RobotFile) -> Result<Robot, Failure> {
+/// Reads a robot, calibrates it and holds its locked joints; with `--verbose`, what was found in the file is said.
+pub(super) fn read(file: &RobotFile, output: &Output) -> Result<Robot, Failure> {
     let source = RobotSource::find(&file.robot, None)?;
-    source.read(&options(file)).map_err(|e| source.refusal(&e).into())
+    let robot = source.read(&options(file)).map_err(|e| source.refusal(&e))?;
+    if file.verbose {
+        robot.diagnostics().iter().for_each(|found| output.remark(&format!("{}:{found}", source.label())));
+    }
+    edited(robot, file)
+}
+
+/// Returns the robot with the calibration and the locks that were asked for.
+fn edited(robot: Robot, file: &RobotFile) -> Result<Robot, Failure> {
+    let mut robot = robot;
+    if let Some(calibration) = &file.calibration {
+        robot = calibrated(&robot, calibration)?;
+    }
+    for lock in &file.lock {
+        let (joint, values) = lock.split_once('=').ok_or_else(|| {
+            Failure::usage(format!("--lock {lock}: write JOINT=VALUE, for example --lock elbow=pi/2"))
+        })?;
+        let values = pose_numbers("--lock", lock, values)?;
+        let refuse =
+            |e: crate::robot::LockError| Failure::new(Exit::Robot, e.to_string()).in_file(&file.robot);
+        robot = robot.with_locked(joint.trim(), &values).map_err(refuse)?;
+    }
+    Ok(robot)
+}
+
+/// Reads numbers or expressions in pi, separated by commas or blanks.
+fn pose_numbers(option: &str, given: &str, text: &str) -> Result<Vec<f64>, Failure> {
+    let parts = text.split([',', ' ', '\t']).filter(|part| !part.is_empty());
+    let values: Result<Vec<f64>, _> = parts.map(evaluate).collect();
+    values.map_err(|e| Failure::usage(format!("{option} {given}: {e}")))
+}
+
+fn show(arguments: &RobotShow, output: &mut Output) -> Result<Exit, Failure> {
+    let robot = read(&arguments.file, output)?;
+    let positions = all_positions(arguments.q.as_deref(), &robot)?;
+    let Some(path) = &arguments.plot else {
+        return output.show(&RobotCard::new(&robot, &arguments.file.robot)).map(|()| Exit::Done);
+    };
+    let figures = robot_figures(&robot, &positions);
+    let written = formula_plot::draw(path, arguments.force, robot.name(), &figures)?;
+    if output.wants_json() {
+        output.json(&serde_json::json!({ "written": written }))?;
+    } else {
+        output.text(&format!("wrote {}\n", written.join(", ")))?;
+    }
+    Ok(Exit::Done)
+}
+
+/// Reads positions of the whole robot: one for each joint that moves on its own, in the order of `robot show`, or some of
+/// them by name; the others are 0.
+fn all_positions(text: Option<&str>, robot: &Robot) -> Result<Vec<f64>, Failure> {
+    let mut positions = vec![0.0; robot.joints().len()];
+    let Some(text) = text.filter(|text| !text.trim().is_empty()) else { return Ok(positions) };
+    let moving: Vec<&str> = robot.movable_joints().map(|joint| joint.name.as_str()).collect();
+    let place = |name: &str| robot.joints().iter().position(|joint| joint.name == name);
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let is_named = parts.iter().all(|part| part.contains('='));
+    if !is_named && parts.len() != moving.len() {
+        let (count, got) = (moving.len(), parts.len());
+        let names = moving.join(", ");
+        let message = format!("--q: expected {count} ({names}), or some of them as NAME=VALUE, got {got}");
+        return Err(Failure::usage(message));
+    }
+    for (part, name) in parts.iter().zip(moving.iter().copied().chain(std::iter::repeat(""))) {
+        let (name, value) = part.split_once('=').map_or((name, *part), |(name, value)| (name.trim(), value));
+        if !moving.contains(&name) {
+            let hint = suggestion(name, moving.iter().copied());
+            return Err(Failure::usage(format!("--q: no joint \"{name}\" moves on its own; {hint}")));
+        }
+        let value = evaluate(value).map_err(|e| Failure::usage(format!("--q {text}: {e}")))?;
+        if let Some(index) = place(name) {
+            positions[index] = value;
+        }
+    }
+    Ok(positions)
+}
+
+fn kinematics(arguments: &ChainArguments, jacobian: bool, output: &mut Output) -> Result<Exit, Failure> {
+    let result = Kinematics::new(arguments, jacobian, output)?;
+    output.show(&result).map(|()| Exit::Done)
 }
 
 #[derive(Serialize)]
@@ -52,17 +134,13 @@ impl RobotList {
             let robot = embedded::get(name).map_err(|e| Failure::new(Exit::Robot, e.to_string()))?;
             Ok(RobotLine {
                 name,
-                movable_joints: movable(&robot).count(),
+                movable_joints: robot.movable_joints().count(),
                 links: robot.links().len(),
                 tips: robot.leaves().map(|link| link.name.clone()).collect(),
             })
         };
         Ok(Self { robots: embedded::names().into_iter().map(line).collect::<Result<_, Failure>>()? })
     }
-}
-
-fn movable(robot: &Robot) -> impl Iterator<Item = &crate::robot::Joint> {
-    robot.joints().iter().filter(|joint| joint.kind.is_movable() && joint.mimic.is_none())
 }
 
 impl Show for RobotList {
@@ -84,91 +162,8 @@ impl Show for RobotList {
 }
 
 #[derive(Serialize)]
-struct RobotCard {
-    name: String,
-    links: Vec<String>,
-    roots: Vec<String>,
-    tips: Vec<String>,
-    joints: Vec<JointLine>,
-    problems: Vec<Problem>,
-}
-
-/// One joint of a robot; a limit that is not known is null.
-#[derive(Serialize)]
-struct JointLine {
-    name: String,
-    kind: &'static str,
-    parent: String,
-    child: String,
-    lower: Option<f64>,
-    upper: Option<f64>,
-    velocity: Option<f64>,
-    mimics: Option<String>,
-}
-
-impl RobotCard {
-    fn new(robot: &Robot) -> Self {
-        let finite = |value: f64| Some(value).filter(|value| value.is_finite());
-        let link = |index: usize| robot.links()[index].name.clone();
-        let line = |joint: &crate::robot::Joint| JointLine {
-            name: joint.name.clone(),
-            kind: joint.kind.as_str(),
-            parent: link(joint.parent),
-            child: link(joint.child),
-            lower: finite(joint.limits.lower),
-            upper: finite(joint.limits.upper),
-            velocity: finite(joint.limits.velocity),
-            mimics: joint.mimic.map(|mimic| robot.joints()[mimic.driver].name.clone()),
-        };
-        Self {
-            name: robot.name().to_owned(),
-            links: robot.links().iter().map(|link| link.name.clone()).collect(),
-            roots: robot.roots().map(|link| link.name.clone()).collect(),
-            tips: robot.leaves().map(|link| link.name.clone()).collect(),
-            joints: robot.joints().iter().map(line).collect(),
-            problems: robot.diagnostics().iter().map(Problem::from).collect(),
-        }
-    }
-}
-
-impl Show for RobotCard {
-    fn text(&self) -> String {
-        let mut table = Table::new(["joint", "type", "from", "to", "lower", "upper", "velocity"]);
-        let limit = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), short);
-        let rotates = |joint: &&JointLine| joint.kind != "fixed";
-        for joint in self.joints.iter().filter(rotates) {
-            let kind = joint
-                .mimics
-                .as_ref()
-                .map_or_else(|| joint.kind.to_owned(), |driver| format!("mimics {driver}"));
-            let limits = [limit(joint.lower), limit(joint.upper), limit(joint.velocity)];
-            table.row(
-                [joint.name.clone(), kind, joint.parent.clone(), joint.child.clone()]
-                    .into_iter()
-                    .chain(limits),
-            );
-        }
-        let fixed = self.joints.len() - self.joints.iter().filter(rotates).count();
-        let mut text = format!(
-            "{}: {} links, {} joints ({fixed} fixed, not shown); root {}; tips {}\n\n{table}\n\
-             Limits in rad, rad/s (revolute) or m, m/s (prismatic); - where the file gives none.\n",
-            self.name,
-            self.links.len(),
-            self.joints.len(),
-            self.roots.join(", "),
-            self.tips.join(", ")
-        );
-        let loud = self.problems.iter().filter(|problem| problem.severity != "note").count();
-        if loud > 0 {
-            let _ = writeln!(text, "{loud} problems in the file: see `kinstep robot check`.");
-        }
-        text
-    }
-}
-
-#[derive(Serialize)]
-struct Problem {
-    severity: &'static str,
+pub(super) struct Problem {
+    pub(super) severity: &'static str,
     line: usize,
     column: usize,
     message: String,
@@ -195,16 +190,23 @@ fn check(file: &RobotFile, output: &mut Output) -> Result<Exit, Failure> {
     let source = RobotSource::find(&file.robot, None)?;
     let (found, joints, links) = match source.read(&options(file)) {
         Ok(robot) => {
+            edited(robot.clone(), file)?;
             let joints = robot.joints().iter().map(|joint| joint.name.clone()).collect();
             (robot.diagnostics().to_vec(), joints, robot.links().len())
         }
-        Err(ReadError::Urdf { error, .. }) => (error.diagnostics().to_vec(), Vec::new(), 0),
-        Err(error) => return Err(source.refusal(&error).into()),
+        Err(error @ ReadError::File { .. }) => return Err(source.refusal(&error).into()),
+        Err(error) => (found_in(&error), Vec::new(), 0),
     };
     let ok = found.iter().all(|problem| problem.severity != Severity::Error);
     let problems = found.iter().map(Problem::from).collect();
     output.show(&CheckResult { ok, problems, joints, links, label: source.label() })?;
     Ok(if ok { Exit::Done } else { Exit::Robot })
+}
+
+/// What was found in a file that makes no robot; there is always something.
+fn found_in(error: &ReadError) -> Vec<Diagnostic> {
+    let found = error.diagnostics().to_vec();
+    if found.is_empty() { vec![Diagnostic::error(1, 1, error.to_string())] } else { found }
 }
 
 impl Show for CheckResult {
@@ -241,12 +243,14 @@ struct Kinematics {
 }
 
 impl Kinematics {
-    fn new(arguments: &ChainArguments, shows_jacobian: bool) -> Result<Self, Failure> {
-        let ChainArguments { file, base, tip, q } = arguments;
-        let robot = read(file)?;
-        let chain = robot
-            .chain(base, tip)
-            .map_err(|e| Failure::new(Exit::Robot, e.to_string()).in_file(&file.robot))?;
+    fn new(arguments: &ChainArguments, shows_jacobian: bool, output: &Output) -> Result<Self, Failure> {
+        let ChainArguments { file, base, tip, q, tool } = arguments;
+        let (robot, tip) = tooled(read(file, output)?, tip, tool.as_deref())?;
+        let chain = robot.chain(base, &tip).map_err(|e| {
+            let is_free = matches!(e, ChainError::UnsupportedJoint { .. });
+            let remedy = if is_free { ", or hold the joint still with --lock JOINT=0" } else { "" };
+            Failure::new(Exit::Robot, format!("{e}{remedy}")).in_file(&file.robot)
+        })?;
         let q = joint_positions("--q", q.as_deref(), &chain)?;
         let mut scratch = chain.scratch();
         let posed = chain.forward(&q, &mut scratch);
@@ -265,9 +269,24 @@ impl Kinematics {
             rotation: std::array::from_fn(|row| std::array::from_fn(|column| rotation[(row, column)])),
             jacobian: std::array::from_fn(|row| columns.iter().map(|column| column[row]).collect()),
             shows_jacobian,
-            ends: [base.clone(), tip.clone()],
+            ends: [base.clone(), tip],
         })
     }
+}
+
+/// Returns the robot with a tool on `tip`, and the link at which the chain then ends.
+fn tooled(robot: Robot, tip: &str, tool: Option<&str>) -> Result<(Robot, String), Failure> {
+    let Some(text) = tool.filter(|_| robot.link(tip).is_some()) else { return Ok((robot, tip.to_owned())) };
+    let numbers = pose_numbers("--tool", text, text)?;
+    let [x, y, z, roll, pitch, yaw] = numbers[..] else {
+        let got = numbers.len();
+        return Err(Failure::usage(format!("--tool: expected 6 numbers x y z roll pitch yaw, got {got}")));
+    };
+    let turn = Rotation3::from_euler_angles(roll, pitch, yaw);
+    let pose = IsometryMatrix3::from_parts(Translation3::new(x, y, z), turn);
+    let name = tool_name(&robot, tip);
+    let robot = robot.with_tool(tip, &name, &pose).map_err(|e| Failure::new(Exit::Robot, e.to_string()))?;
+    Ok((robot, name))
 }
 
 /// Reads one position per joint of the chain; a chain without joints needs none.
@@ -291,7 +310,7 @@ pub(super) fn numbers(option: &str, text: &str) -> Result<Vec<f64>, Failure> {
 impl Show for Kinematics {
     fn text(&self) -> String {
         let [base, tip] = &self.ends;
-        let number = |value: &f64| format!("{value:.9}");
+        let number = |value: &f64| format!("{value:.9}").replace("-0.000000000", "0.000000000");
         let mut pose = Table::new([format!("{tip} in {base}"), "position [m]".into(), "rotation".into()]);
         for (axis, (position, row)) in ["x", "y", "z"].iter().zip(self.position.iter().zip(&self.rotation)) {
             pose.row([(*axis).to_owned(), number(position)].into_iter().chain(row.iter().map(number)));

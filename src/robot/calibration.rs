@@ -242,7 +242,10 @@ impl Robot {
         origin.translation.vector += Vector3::from(xyz);
         if correction.rpy != [0.0; 3] {
             let turn = Rotation3::from_euler_angles(roll, pitch, yaw);
-            origin = IsometryMatrix3::from_parts(Translation3::from(origin.translation.vector), turn * origin.rotation);
+            origin = IsometryMatrix3::from_parts(
+                Translation3::from(origin.translation.vector),
+                turn * origin.rotation,
+            );
         }
         joint.place(origin * displacement(joint.kind, joint.axis, zero));
         joint.axis *= sign;

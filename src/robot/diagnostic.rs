@@ -44,6 +44,13 @@ pub struct Diagnostic {
     pub message: String,
 }
 
+impl Diagnostic {
+    /// Returns an error at a place.
+    pub fn error(line: usize, column: usize, message: impl Into<String>) -> Diagnostic {
+        Diagnostic { severity: Severity::Error, line, column, message: message.into() }
+    }
+}
+
 impl fmt::Display for Diagnostic {
     /// Writes `line:column: severity: message`, so that a file name and a colon can stand in front.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -146,7 +146,7 @@ fn escaped(name: &str) -> String {
                 let _ = write!(text, "&#{};", u32::from(c));
             }
             // No reader accepts the other control characters; a name with them can only have been made by a program.
-            c if c.is_control() => text.push(char::REPLACEMENT_CHARACTER),
+            c if c < ' ' => text.push(char::REPLACEMENT_CHARACTER),
             c => text.push(c),
         }
     }

@@ -2,6 +2,8 @@
 
 /// Longest name, in characters, that a comparison is worth.
 const LONGEST: usize = 64;
+/// Longest name of a link or joint that is read, in bytes.
+pub(super) const LONGEST_NAME: usize = 1024;
 /// How many known names a message offers at most.
 const OFFERED: usize = 3;
 /// How many characters of a name or value a message shows.

@@ -45,8 +45,9 @@ impl<'a, 'i> Entries<'a, 'i> {
     pub(super) fn check_keys(&self, what: &str, known: &[&str], report: &mut Report<'_>) {
         for key in self.table.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {
             let suggestion = report.suggestion(key.get_ref(), known.iter().copied());
-            let (name, known) = (quote(key.get_ref()), list(known, "and"));
-            report.error(key.span().start, format!("{what} has no key {name}{suggestion}; it has {known}"));
+            let hint =
+                if suggestion.is_empty() { format!("; it has {}", list(known, "and")) } else { suggestion };
+            report.error(key.span().start, format!("{what} has no key {}{hint}", quote(key.get_ref())));
         }
     }
 
@@ -90,7 +91,8 @@ impl<'a, 'i> Entries<'a, 'i> {
             return None;
         };
         let numbers = entries.iter().enumerate();
-        let numbers: Vec<_> = numbers.map(|(i, entry)| number(&format!("{key}[{i}]"), entry, report)).collect();
+        let numbers: Vec<_> =
+            numbers.map(|(i, entry)| number(&format!("{key}[{i}]"), entry, report)).collect();
         numbers.into_iter().collect()
     }
 
@@ -124,7 +126,9 @@ fn number(key: &str, value: Value<'_, '_>, report: &mut Report<'_>) -> Option<f6
 pub(super) fn real(key: &str, value: Value<'_, '_>, report: &mut Report<'_>) -> Option<f64> {
     let parsed = match value.get_ref() {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().replace('_', "").parse().ok(),
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|i| i as f64),
+        DeValue::Integer(integer) => {
+            i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|i| i as f64)
+        }
         DeValue::Float(float) => float.as_str().replace('_', "").parse().ok(),
         DeValue::String(text) => match evaluate(text) {
             Ok(number) => Some(number),

@@ -20,6 +20,7 @@ mod robots;
 #[cfg(test)]
 mod tests;
 
+pub use crate::math::{ExpressionError, evaluate};
 pub use document::ScenarioText;
 pub use error::{ErrorKind, Place, ScenarioError};
 pub use formulas::FormulaRows;
@@ -27,12 +28,13 @@ pub use held::Held;
 pub use key_path::{KeyPath, Step};
 pub use model::{ArmSpec, LawKind, LawSpec, Mount, Scenario, Start, TaskKind};
 pub use path_spec::{PathKind, PathSpec, Plane, TimeLawKind, TurnSpec};
-pub use crate::math::{ExpressionError, evaluate};
 pub use real::Real;
 pub use robots::RobotSource;
 
 #[cfg(feature = "cli")]
 pub(crate) use document::read_text;
+#[cfg(feature = "cli")]
+pub(crate) use error::suggestion;
 #[cfg(feature = "cli")]
 pub(crate) use formulas::row_refusals;
 #[cfg(feature = "cli")]

@@ -18,7 +18,9 @@ use crate::robot::{Calibration, CalibrationError, Robot};
 pub(crate) fn calibrated(robot: &Robot, file: &Path) -> Result<Robot, ScenarioError> {
     let text = read_text(file)?;
     let calibration = Calibration::from_toml(&text);
-    calibration.and_then(|calibration| robot.with_calibration(&calibration)).map_err(|e| refusal(&e, file, &text))
+    calibration
+        .and_then(|calibration| robot.with_calibration(&calibration))
+        .map_err(|e| refusal(&e, file, &text))
 }
 
 fn refusal(error: &CalibrationError, file: &Path, text: &str) -> ScenarioError {
@@ -72,9 +74,9 @@ impl ArmSpec {
         }
         for (joint, held) in &self.lock {
             let numbers: Vec<f64> = held.numbers().iter().map(Real::value).collect();
-            robot = robot.with_locked(joint, &numbers).map_err(|e| {
-                ScenarioError::at(ErrorKind::Robot, &at.key("lock").key(joint), e)
-            })?;
+            robot = robot
+                .with_locked(joint, &numbers)
+                .map_err(|e| ScenarioError::at(ErrorKind::Robot, &at.key("lock").key(joint), e))?;
         }
         if self.tool.is_identity() || robot.link(&self.tip).is_none() {
             return Ok((robot, self.tip.clone()));

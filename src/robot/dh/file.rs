@@ -2,7 +2,7 @@
 
 use super::table::{DhConvention, DhError, DhRow, DhTable};
 use crate::robot::names::{list, quote};
-use crate::robot::toml_table::{Entries, real, read_toml, wrong_type};
+use crate::robot::toml_table::{Entries, read_toml, real, wrong_type};
 use crate::robot::urdf::report::Report;
 use crate::robot::{JointKind, Limits};
 
@@ -50,7 +50,8 @@ fn read(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhTable> {
             };
             for key in ["limits", "velocity"] {
                 if file.value(key).is_some() {
-                    report.error(file.place(key), format!("`{key}` belongs into the rows, or beside `planar`"));
+                    report
+                        .error(file.place(key), format!("`{key}` belongs into the rows, or beside `planar`"));
                 }
             }
             let convention = convention(file, report);
@@ -101,7 +102,8 @@ fn convention(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhConve
 
 fn planar(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<Vec<DhRow>> {
     if file.value("convention").is_some() {
-        report.error(file.place("convention"), "`convention` is about rows; an arm given by `planar` has none");
+        report
+            .error(file.place("convention"), "`convention` is about rows; an arm given by `planar` has none");
     }
     let lengths = file.numbers("planar", report)?;
     let limits = limits(file, report);
@@ -147,7 +149,8 @@ fn kind(table: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<JointKind> {
     if kind.is_none() {
         let words = KINDS.map(JointKind::as_str);
         let suggestion = report.suggestion(word, words);
-        let cause = format!("{} is no kind of joint{suggestion}; rows are {}", quote(word), list(&words, "or"));
+        let cause =
+            format!("{} is no kind of joint{suggestion}; rows are {}", quote(word), list(&words, "or"));
         report.error(table.place("kind"), cause);
     }
     kind

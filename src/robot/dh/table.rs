@@ -8,6 +8,9 @@ use thiserror::Error;
 use crate::robot::toml_table::MAX_SIZE;
 use crate::robot::{Diagnostic, Joint, JointKind, Limits, Link, MAX_JOINTS, Robot, diagnostic, names};
 
+/// Most rows of a table: in the standard custom each makes two joints.
+const MAX_ROWS: usize = MAX_JOINTS / 2;
+
 /// Which of the two customs the rows follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DhConvention {
@@ -91,7 +94,9 @@ pub enum DhError {
         problem: String,
     },
     /// No row moves, or there are too many.
-    #[error("the table has {rows} rows, {moving} of which move; a robot needs one that moves and at most {MAX_JOINTS} rows")]
+    #[error(
+        "the table has {rows} rows, {moving} of which move; a robot needs one that moves and at most {MAX_ROWS} rows"
+    )]
     Size {
         /// How many rows there are.
         rows: usize,
@@ -166,8 +171,10 @@ impl DhRow {
 
     /// The constant transforms before and after the motion about (or along) z.
     fn constants(&self, convention: DhConvention) -> (IsometryMatrix3<f64>, IsometryMatrix3<f64>) {
-        let about_x = placed(Vector3::new(self.a, 0.0, 0.0), Rotation3::from_euler_angles(self.alpha, 0.0, 0.0));
-        let about_z = placed(Vector3::new(0.0, 0.0, self.d), Rotation3::from_euler_angles(0.0, 0.0, self.theta));
+        let about_x =
+            placed(Vector3::new(self.a, 0.0, 0.0), Rotation3::from_euler_angles(self.alpha, 0.0, 0.0));
+        let about_z =
+            placed(Vector3::new(0.0, 0.0, self.d), Rotation3::from_euler_angles(0.0, 0.0, self.theta));
         match convention {
             // The motion about z commutes with everything about z.
             DhConvention::Modified => (about_x * about_z, IsometryMatrix3::identity()),
@@ -199,7 +206,7 @@ impl Robot {
     /// [`DhError`]: no row that moves, too many rows, a name used twice, or a row with numbers that can not be meant.
     pub fn from_dh(table: &DhTable) -> Result<Robot, DhError> {
         let moving = table.rows.iter().filter(|row| row.kind.is_movable()).count();
-        if moving == 0 || table.rows.len() > MAX_JOINTS {
+        if moving == 0 || table.rows.len() > MAX_ROWS {
             return Err(DhError::Size { rows: table.rows.len(), moving });
         }
         let mut serial = Serial::new(&table.base);
@@ -223,7 +230,12 @@ struct Serial {
 impl Serial {
     fn new(base: &str) -> Serial {
         let links = vec![Link { name: base.to_owned(), parent_joint: None, defect: None }];
-        Serial { links, joints: Vec::new(), link_names: HashSet::from([base.to_owned()]), joint_names: HashSet::new() }
+        Serial {
+            links,
+            joints: Vec::new(),
+            link_names: HashSet::from([base.to_owned()]),
+            joint_names: HashSet::new(),
+        }
     }
 
     fn row(&mut self, row: &DhRow, convention: DhConvention) -> Result<(), String> {
@@ -250,11 +262,20 @@ impl Serial {
         if name.trim().is_empty() || link.trim().is_empty() {
             return Err("its joint or its link has an empty name".to_owned());
         }
+        if name.len().max(link.len()) > names::LONGEST_NAME {
+            return Err(format!("a name has more than {} bytes", names::LONGEST_NAME));
+        }
         if !self.link_names.insert(link.to_owned()) {
-            return Err(format!("link {} is there already; every link needs its own name", names::quote(link)));
+            return Err(format!(
+                "link {} is there already; every link needs its own name",
+                names::quote(link)
+            ));
         }
         if !self.joint_names.insert(name.to_owned()) {
-            return Err(format!("joint {} is there already; every joint needs its own name", names::quote(name)));
+            return Err(format!(
+                "joint {} is there already; every joint needs its own name",
+                names::quote(name)
+            ));
         }
         let child = self.links.len();
         self.links.push(Link { name: link.to_owned(), parent_joint: Some(self.joints.len()), defect: None });

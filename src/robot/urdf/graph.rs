@@ -311,12 +311,18 @@ fn origin(raw: &RawJoint) -> IsometryMatrix3<f64> {
 
 fn axis(raw: &RawJoint) -> Vector3<f64> {
     let xyz = raw.read.as_ref().map_or([1.0, 0.0, 0.0], |read| read.axis.xyz.0);
-    let axis = Vector3::from(xyz);
+    let axis = of_common_size(Vector3::from(xyz));
     // A vector that is as long as rounding lets a unit vector be keeps its bits.
     if (axis.norm() - 1.0).abs() <= 2.0 * f64::EPSILON {
         return axis;
     }
     axis.try_normalize(0.0).unwrap_or_else(Vector3::x)
+}
+
+/// A direction whose squares neither vanish nor overflow.
+fn of_common_size(axis: Vector3<f64>) -> Vector3<f64> {
+    let size = axis.amax();
+    if (1e-100..1e100).contains(&size) || size == 0.0 { axis } else { axis / size }
 }
 
 /// Roll, pitch and yaw, where the file gives the orientation so.

@@ -135,7 +135,10 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
         self.mimic();
         if matches!(self.joint.kind, Some(JointKind::Floating | JointKind::Planar | JointKind::Spherical)) {
             let kind = self.joint.kind.map_or("", JointKind::as_str);
-            self.note(self.joint.offset, &format!("it is {kind}: no chain can pass through it, unless it is locked"));
+            self.note(
+                self.joint.offset,
+                &format!("it is {kind}: no chain can pass through it, unless it is locked"),
+            );
         }
         self.joint
     }

@@ -8,10 +8,7 @@ use super::element::{self, Known};
 use super::report::Report;
 use super::{MAX_JOINTS, UrdfOptions, number};
 use crate::robot::Defect;
-use crate::robot::names::quote;
-
-/// Longest name of a link or joint, in bytes.
-pub(super) const LONGEST_NAME: usize = 1024;
+use crate::robot::names::{LONGEST_NAME, quote};
 
 /// The shapes that a `<geometry>` may hold.
 const SHAPES: [&str; 5] = ["box", "cylinder", "capsule", "sphere", "mesh"];

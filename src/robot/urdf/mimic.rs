@@ -175,6 +175,11 @@ fn limited(
         let limit = joint.read.as_ref().map(|read| &read.limit);
         limit.map_or((f64::NEG_INFINITY, f64::INFINITY), |limit| (limit.lower, limit.upper))
     };
+    if !multiplier.is_normal() || !offset.is_finite() {
+        let place = joints[index].mimic.as_ref().map_or(joints[index].offset, |reference| reference.offset);
+        let reason = format!("its ratio to joint {} is out of range", quote(&joints[driver].name));
+        joints[index].fail(place, reason, report);
+    }
     let (lower, upper) = limits(&joints[driver]);
     let (own_lower, own_upper) = limits(&joints[index]);
     let (a, b) = ((own_lower - offset) / multiplier, (own_upper - offset) / multiplier);

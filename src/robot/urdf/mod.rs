@@ -92,11 +92,7 @@ pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, ReadError> {
 }
 
 /// Reads a robot from the bytes of a file.
-pub(super) fn read_named_bytes(
-    path: &Path,
-    bytes: &[u8],
-    options: &UrdfOptions,
-) -> Result<Robot, ReadError> {
+pub(super) fn read_named_bytes(path: &Path, bytes: &[u8], options: &UrdfOptions) -> Result<Robot, ReadError> {
     let mut options = options.clone();
     if options.name.is_none() {
         options.name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());

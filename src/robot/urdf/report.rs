@@ -49,7 +49,11 @@ impl<'a> Report<'a> {
     }
 
     /// Returns "; did you mean ...?" for a name that is not known.
-    pub(in crate::robot) fn suggestion<'n>(&mut self, name: &str, known: impl IntoIterator<Item = &'n str>) -> String {
+    pub(in crate::robot) fn suggestion<'n>(
+        &mut self,
+        name: &str,
+        known: impl IntoIterator<Item = &'n str>,
+    ) -> String {
         if self.suggestions_left == 0 {
             return String::new();
         }

@@ -1,0 +1,264 @@
+//! `kinstep robot show`: the tree as people draw it, the chains through it, and what to ask next.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::output::Show;
+use super::robot::Problem;
+use crate::report::{Table, short};
+use crate::robot::{Chain, Joint, JointKind, Link, Robot};
+
+/// A robot as people and programs look at it.
+#[derive(Serialize)]
+pub(super) struct RobotCard {
+    name: String,
+    links: Vec<String>,
+    roots: Vec<String>,
+    tips: Vec<String>,
+    joints: Vec<JointLine>,
+    chains: Vec<ChainLine>,
+    problems: Vec<Problem>,
+    #[serde(skip)]
+    rows: Vec<Row>,
+    #[serde(skip)]
+    label: String,
+}
+
+/// One joint of a robot; a limit that is not known is null.
+#[derive(Serialize)]
+struct JointLine {
+    name: String,
+    kind: &'static str,
+    parent: String,
+    child: String,
+    lower: Option<f64>,
+    upper: Option<f64>,
+    velocity: Option<f64>,
+    mimics: Option<String>,
+}
+
+/// A chain to a tip: its joints and reach; a reach that is not known is null.
+#[derive(Serialize)]
+struct ChainLine {
+    base: String,
+    tip: String,
+    dof: usize,
+    reach: Option<f64>,
+    joints: Vec<String>,
+    /// Positions within the limits, as near to zero as can be.
+    #[serde(skip)]
+    q: Vec<f64>,
+}
+
+/// A line of the drawn tree: the link with its branches, and the joint above it by its place.
+struct Row {
+    drawn: String,
+    joint: Option<usize>,
+}
+
+impl RobotCard {
+    pub(super) fn new(robot: &Robot, label: &str) -> Self {
+        let names = |links: Vec<&Link>| links.iter().map(|link| link.name.clone()).collect();
+        Self {
+            name: robot.name().to_owned(),
+            links: names(robot.links().iter().collect()),
+            roots: names(robot.roots().collect()),
+            tips: names(robot.leaves().collect()),
+            joints: robot.joints().iter().map(|joint| JointLine::new(robot, joint)).collect(),
+            chains: chains(robot),
+            problems: robot.diagnostics().iter().map(Problem::from).collect(),
+            rows: rows(robot),
+            label: label.to_owned(),
+        }
+    }
+}
+
+impl JointLine {
+    fn new(robot: &Robot, joint: &Joint) -> Self {
+        let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+        let link = |index: usize| robot.links()[index].name.clone();
+        Self {
+            name: joint.name.clone(),
+            kind: joint.kind.as_str(),
+            parent: link(joint.parent),
+            child: link(joint.child),
+            lower: finite(joint.limits.lower),
+            upper: finite(joint.limits.upper),
+            velocity: finite(joint.limits.velocity),
+            mimics: joint.mimic.map(|mimic| robot.joints()[mimic.driver].name.clone()),
+        }
+    }
+}
+
+/// The chains that something moves: to every tip from the link furthest above it that a chain reaches.
+fn chains(robot: &Robot) -> Vec<ChainLine> {
+    let passable = |joint: &Joint| joint.kind.is_supported() && joint.defect.is_none();
+    let line = |tip: &Link| {
+        let mut base = tip;
+        while let Some(joint) =
+            base.parent_joint.map(|joint| &robot.joints()[joint]).filter(|own| passable(own))
+        {
+            base = &robot.links()[joint.parent];
+        }
+        let chain = robot.chain(&base.name, &tip.name).ok().filter(|chain| chain.dof() > 0)?;
+        Some(ChainLine::new(&chain))
+    };
+    robot.leaves().filter_map(line).collect()
+}
+
+impl ChainLine {
+    fn new(chain: &Chain) -> Self {
+        Self {
+            base: chain.base().to_owned(),
+            tip: chain.tip().to_owned(),
+            dof: chain.dof(),
+            reach: Some(chain.reach()).filter(|reach| reach.is_finite()),
+            joints: chain.joints().iter().map(|joint| joint.name.clone()).collect(),
+            q: chain.position_limits().map(near_zero).collect(),
+        }
+    }
+}
+
+/// Zero, or the middle of the limits where zero lies outside.
+fn near_zero((lower, upper): (f64, f64)) -> f64 {
+    let middle = f64::midpoint(lower, upper);
+    if lower <= 0.0 && 0.0 <= upper || !middle.is_finite() { 0.0 } else { (middle * 100.0).round() / 100.0 }
+}
+
+/// Draws the tree: branches where a link has several children, and one below the other where it has one.
+fn rows(robot: &Robot) -> Vec<Row> {
+    let mut children = vec![0_usize; robot.links().len()];
+    robot.joints().iter().for_each(|joint| children[joint.parent] += 1);
+    // What stands before the children of each link.
+    let mut indents = vec![String::new(); robot.links().len()];
+    let mut drawn = Vec::with_capacity(robot.links().len());
+    for (index, row) in robot.tree().enumerate() {
+        let joint = row.link.parent_joint;
+        let above = joint.map(|joint| robot.joints()[joint].parent);
+        let indent = above.map_or_else(String::new, |above| indents[above].clone());
+        let (mark, below) = match above {
+            Some(above) if children[above] > 1 && row.is_last => ("└ ", "  "),
+            Some(above) if children[above] > 1 => ("├ ", "│ "),
+            _ => ("", ""),
+        };
+        drawn.push(Row { drawn: format!("{indent}{mark}{}", row.link.name), joint });
+        indents[index] = format!("{indent}{below}");
+    }
+    drawn
+}
+
+impl Show for RobotCard {
+    fn text(&self) -> String {
+        let mut text = format!("{}\n\n{}\n", self.heading(), self.tree());
+        text.push_str(
+            "Limits in rad, rad/s (revolute) or m, m/s (prismatic); - where the file gives none. A link hangs from the \
+             one above it, or from the one whose branch it is on.\n",
+        );
+        if !self.chains.is_empty() {
+            let _ = write!(text, "\n{}", self.chain_table());
+        }
+        self.suggest(&mut text);
+        let loud = self.problems.iter().filter(|problem| problem.severity != "note").count();
+        if loud > 0 {
+            let count = if loud == 1 { "1 problem".to_owned() } else { format!("{loud} problems") };
+            let _ = writeln!(text, "\n{count} in the file: see `kinstep robot check {}`.", self.label);
+        }
+        text
+    }
+}
+
+impl RobotCard {
+    fn heading(&self) -> String {
+        let fixed = self.joints.iter().filter(|joint| joint.kind == JointKind::Fixed.as_str()).count();
+        let followers = self.joints.iter().filter(|joint| joint.mimics.is_some()).count();
+        let following = match followers {
+            0 => String::new(),
+            n => format!(" ({n} of them by following another)"),
+        };
+        let moving = self.joints.len() - fixed;
+        format!(
+            "{}: {} links, {moving} joints that move{following}, {fixed} fixed",
+            self.name,
+            self.links.len()
+        )
+    }
+
+    fn tree(&self) -> Table {
+        let mut table = Table::new(["link", "joint", "type", "lower", "upper", "velocity"]);
+        let limit = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), short);
+        for row in &self.rows {
+            let Some(joint) = row.joint.map(|joint| &self.joints[joint]) else {
+                table.row([row.drawn.clone()]);
+                continue;
+            };
+            let kind = joint
+                .mimics
+                .as_ref()
+                .map_or_else(|| joint.kind.to_owned(), |driver| format!("{}, follows {driver}", joint.kind));
+            let mut cells = vec![row.drawn.clone(), joint.name.clone(), kind];
+            if joint.kind != JointKind::Fixed.as_str() {
+                cells.extend([joint.lower, joint.upper, joint.velocity].map(limit));
+            }
+            table.row(cells);
+        }
+        table
+    }
+
+    fn chain_table(&self) -> Table {
+        let mut table = Table::new(["from", "to", "dof", "reach [m]", "joints"]);
+        for chain in &self.chains {
+            let reach = chain.reach.map_or_else(|| "-".to_owned(), short);
+            let joints = between(&chain.joints);
+            let dof = chain.dof.to_string();
+            table.row([chain.base.clone(), chain.tip.clone(), dof, reach, joints]);
+        }
+        table
+    }
+
+    /// Says what can be asked next, with a command that works as it stands.
+    fn suggest(&self, text: &mut String) {
+        let reach = |chain: &&ChainLine| chain.reach.unwrap_or(0.0);
+        let most = self.chains.iter().rev().max_by(|a, b| reach(a).total_cmp(&reach(b)));
+        if let Some(chain) = most {
+            let q: Vec<String> = chain.q.iter().map(f64::to_string).collect();
+            let _ = writeln!(
+                text,
+                "\nAny two links are base and tip of a chain, in either direction, for example:\n  \
+                 kinstep robot jacobian {} --base {} --tip {} --q={}",
+                quoted(&self.label),
+                quoted(&chain.base),
+                quoted(&chain.tip),
+                q.join(",")
+            );
+        }
+        let is_free = |joint: &&JointLine| ["floating", "planar", "spherical"].contains(&joint.kind);
+        if let Some(free) = self.joints.iter().find(is_free) {
+            let _ = writeln!(
+                text,
+                "\nNo chain passes through `{}`, which is {}, unless it is held still: --lock {}=0",
+                free.name,
+                free.kind,
+                quoted(&free.name)
+            );
+        }
+    }
+}
+
+/// The first and the last of many names.
+fn between(names: &[String]) -> String {
+    match names {
+        [first, .., last] if names.len() > 3 => format!("{first} ... {last}"),
+        _ => names.join(", "),
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "_-./:+@%,".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}

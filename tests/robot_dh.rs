@@ -1,0 +1,231 @@
+//! Denavit-Hartenberg tables: equal to the same robots as URDF, and refused with the place of what is wrong.
+
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
+
+use kinstep::nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3, Vector6};
+use kinstep::robot::{
+    Chain, DhConvention, DhError, DhRow, DhTable, JointKind, Limits, Robot, UrdfOptions, embedded,
+};
+
+/// Numbers that look random and are the same every time.
+fn samples(count: usize) -> impl Iterator<Item = f64> {
+    (1..=count).map(|n| (n as f64 * 0.754_877_666_246_692_7).fract() * 2.0 - 1.0)
+}
+
+fn example(name: &str) -> Robot {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/dh").join(name);
+    Robot::from_file(path, &UrdfOptions::default()).unwrap()
+}
+
+/// The largest difference of poses and Jacobians of two chains at 200 configurations.
+fn difference(one: &Chain, other: &Chain) -> f64 {
+    let dof = one.dof();
+    assert_eq!(one.joints(), other.joints(), "names, kinds and limits");
+    let mut numbers = samples(200 * dof);
+    let run = |chain: &Chain, q: &[f64]| {
+        let mut columns = vec![Vector6::zeros(); dof];
+        let mut scratch = chain.scratch();
+        let posed = chain.forward(q, &mut scratch);
+        posed.geometric_jacobian(&mut columns);
+        (posed.pose(), columns)
+    };
+    let mut worst = 0.0_f64;
+    for _ in 0..200 {
+        let q: Vec<f64> = numbers.by_ref().take(dof).map(|x| 3.0 * x).collect();
+        let ((pose, columns), (other_pose, other_columns)) = (run(one, &q), run(other, &q));
+        worst = worst.max((pose.translation.vector - other_pose.translation.vector).amax());
+        worst = worst.max((pose.rotation.matrix() - other_pose.rotation.matrix()).amax());
+        let pairs = columns.iter().zip(&other_columns);
+        worst = pairs.map(|(a, b)| (a - b).amax()).fold(worst, f64::max);
+    }
+    worst
+}
+
+#[test]
+fn the_modified_table_of_the_panda_is_its_urdf() {
+    let (table, urdf) = (example("panda.toml"), embedded::get("panda").unwrap());
+    for (base, tip) in [("panda_link0", "panda_link8"), ("panda_link7", "panda_link2")] {
+        let off = difference(&table.chain(base, tip).unwrap(), &urdf.chain(base, tip).unwrap());
+        assert!(off < 1e-12, "{base} to {tip}: {off:e}");
+    }
+}
+
+#[test]
+fn the_standard_table_of_the_ur5e_is_its_urdf() {
+    let (table, urdf) = (example("ur5e.toml"), embedded::get("ur5e").unwrap());
+    let off = difference(&table.chain("base", "tool0").unwrap(), &urdf.chain("base", "tool0").unwrap());
+    assert!(off < 1e-12, "{off:e}");
+}
+
+#[test]
+fn four_unit_lengths_are_the_planar_arm() {
+    let table = Robot::from_dh(&DhTable::planar("planar4", &[1.0; 4])).unwrap();
+    let urdf = embedded::get("planar4").unwrap();
+    for (base, tip) in [("base", "tip"), ("link3", "link1"), ("link2", "tip")] {
+        assert_eq!(difference(&table.chain(base, tip).unwrap(), &urdf.chain(base, tip).unwrap()), 0.0);
+    }
+    let planar = example("planar3.toml");
+    assert_eq!(planar.name(), "planar3");
+    let chain = planar.chain("base", "tip").unwrap();
+    assert!((chain.reach() - 2.8).abs() < 1e-15);
+    let limit = 5.0 * std::f64::consts::PI / 6.0;
+    assert!(
+        chain
+            .joints()
+            .iter()
+            .all(|joint| joint.limits == Limits { lower: -limit, upper: limit, velocity: 2.0 })
+    );
+}
+
+fn turn_x(angle: f64) -> IsometryMatrix3<f64> {
+    IsometryMatrix3::from_parts(
+        Translation3::identity(),
+        Rotation3::from_axis_angle(&Vector3::x_axis(), angle),
+    )
+}
+
+fn turn_z(angle: f64) -> IsometryMatrix3<f64> {
+    IsometryMatrix3::from_parts(
+        Translation3::identity(),
+        Rotation3::from_axis_angle(&Vector3::z_axis(), angle),
+    )
+}
+
+/// Both customs from their definitions, frame after frame.
+fn product(table: &DhTable, q: &[f64]) -> Vec<IsometryMatrix3<f64>> {
+    let mut pose = IsometryMatrix3::identity();
+    let mut poses = Vec::new();
+    for (row, &q) in table.rows.iter().zip(q) {
+        let (theta, d) = match row.kind {
+            JointKind::Prismatic => (row.theta, row.d + q),
+            JointKind::Fixed => (row.theta, row.d),
+            _ => (row.theta + q, row.d),
+        };
+        let (z, x) =
+            (IsometryMatrix3::translation(0.0, 0.0, d), IsometryMatrix3::translation(row.a, 0.0, 0.0));
+        pose *= match table.convention {
+            DhConvention::Standard => turn_z(theta) * z * x * turn_x(row.alpha),
+            DhConvention::Modified => turn_x(row.alpha) * x * turn_z(theta) * z,
+        };
+        poses.push(pose);
+    }
+    poses
+}
+
+#[test]
+fn every_frame_of_a_random_table_is_the_product_of_its_rows() {
+    let mut numbers = samples(100_000);
+    let kinds = [JointKind::Revolute, JointKind::Prismatic, JointKind::Continuous, JointKind::Fixed];
+    for case in 0..100 {
+        let convention = if case % 2 == 0 { DhConvention::Standard } else { DhConvention::Modified };
+        let rows: Vec<DhRow> = (0..7)
+            .map(|i| DhRow {
+                joint: format!("j{i}"),
+                link: format!("l{i}"),
+                kind: if i == 0 { JointKind::Revolute } else { kinds[(case * 7 + i * i) % 4] },
+                a: numbers.next().unwrap(),
+                alpha: 3.0 * numbers.next().unwrap(),
+                d: numbers.next().unwrap(),
+                theta: 3.0 * numbers.next().unwrap(),
+                limits: Limits::UNLIMITED,
+            })
+            .collect();
+        let table = DhTable { name: "random".into(), base: "base".into(), convention, rows };
+        let robot = Robot::from_dh(&table).unwrap();
+        let q: Vec<f64> = numbers.by_ref().take(7).collect();
+        for (row, expected) in product(&table, &q).iter().enumerate() {
+            let chain = robot.chain("base", &format!("l{row}")).unwrap();
+            let moving = (0..=row).filter(|&i| table.rows[i].kind != JointKind::Fixed).map(|i| q[i]);
+            let pose = chain.forward(&moving.collect::<Vec<_>>(), &mut chain.scratch()).pose();
+            let off = (pose.translation.vector - expected.translation.vector).amax()
+                + (pose.rotation.matrix() - expected.rotation.matrix()).amax();
+            assert!(off < 1e-13, "case {case}, frame {row}: {off:e}");
+        }
+    }
+}
+
+fn refusals(text: &str) -> Vec<String> {
+    match DhTable::from_toml(text) {
+        Err(DhError::Text(found)) => found.iter().map(ToString::to_string).collect(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn everything_that_is_wrong_with_a_table_is_said_with_its_place() {
+    let text = "convention = \"craig\"\ncolour = 3\n[[joint]]\nalhpa = 1\na = \"pie\"\n[[joint]]\nkind = \"ball\"\n[[joint]]\n\
+                limits = [2, 1]\n[[joint]]\nd = 1e7\nlimits = 3\n[[joint]]\nkind = \"continuous\"\nlimits = [0, 1]\n";
+    assert_eq!(
+        refusals(text),
+        [
+            "1:14: error: `craig` is no convention: \"standard\" is Rz(theta) Tz(d) Tx(a) Rx(alpha), \"modified\" (Craig) is \
+             Rx(alpha) Tx(a) Rz(theta) Tz(d)",
+            "2:1: error: a table of a robot has no key `colour`; it has `name`, `base`, `convention`, `joint`, `planar`, \
+             `limits` and `velocity`",
+            "4:1: error: a row has no key `alhpa`; did you mean `alpha`?",
+            "5:5: error: `a`: \"pie\", column 1: 'pie' is not known; the only name is pi",
+            "7:8: error: `ball` is no kind of joint; rows are `revolute`, `continuous`, `prismatic` or `fixed`",
+            "8:1: error: joint `joint3`: its limits 2 to 1 at a speed of inf let nothing move",
+            "11:5: error: `d`: 1e7 is beyond any arm; lengths [m] and angles [rad] are at most 1e6 in size",
+            "12:10: error: `limits`: expected two numbers, [lower, upper], found the integer `3`",
+            "13:1: error: joint `joint5`: a continuous joint has no limits; make it revolute, or leave them out",
+        ]
+    );
+}
+
+#[test]
+fn a_table_without_an_arm_says_what_to_write() {
+    for (text, said) in [
+        ("", "there is no arm in this file"),
+        ("name = \"x\"", "there is no arm in this file"),
+        ("convention = ", "not TOML"),
+        ("[[joint]]\na = 1", "the key `convention` is missing"),
+        ("planar = [1]\n[[joint]]\na = 1", "both describe the arm"),
+        ("planar = \"long\"", "expected a list of numbers"),
+        ("planar = [1, nan]", "this is not a number"),
+        ("planar = []", "no row of the table moves"),
+        ("planar = [1]\nlimits = [1, -1]", "let nothing move"),
+        ("convention = \"standard\"\njoint = [3]", "expected rows that are tables"),
+        ("convention = \"standard\"\njoint = 3", "each begun by a line [[joint]]"),
+        ("convention = \"standard\"\nvelocity = 3\n[[joint]]\na = 1", "belongs into the rows"),
+        ("convention = \"standard\"\n[[joint]]\nkind = \"fixed\"", "no row of the table moves"),
+        ("sigma = 0.01\n[[arm]]\nname = \"left\"", "looks like a scenario"),
+    ] {
+        let found = refusals(text);
+        assert!(found.iter().any(|found| found.contains(said)), "{text:?}: {found:?}");
+    }
+}
+
+#[test]
+fn a_table_made_by_a_program_is_checked_as_one_from_a_file() {
+    let arm = DhTable::planar("arm", &[1.0, 1.0]);
+    let refused = |change: &dyn Fn(&mut DhTable)| {
+        let mut table = arm.clone();
+        change(&mut table);
+        Robot::from_dh(&table).unwrap_err().to_string()
+    };
+    assert!(refused(&|table| table.rows.clear()).contains("0 rows, 0 of which move"));
+    assert!(refused(&|table| table.rows[1].a = f64::NAN).starts_with("row 2 of the table: `a` is NaN"));
+    assert!(refused(&|table| table.rows[1].kind = JointKind::Floating).contains("can not be floating"));
+    assert!(refused(&|table| table.rows[1].joint = "j1".into()).contains("joint `j1` is there already"));
+    assert!(refused(&|table| table.rows[1].link = "base".into()).contains("link `base` is there already"));
+    assert!(refused(&|table| table.rows[0].link = " ".into()).contains("empty name"));
+}
+
+#[test]
+fn a_file_is_known_by_what_it_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        Robot::from_file(folder.path().join(name), &UrdfOptions::default())
+    };
+    assert_eq!(read("arm.toml", "planar = [1]").unwrap().name(), "arm");
+    assert_eq!(read("arm", "\u{feff}# two links\nplanar = [1, 2]\nname = \"two\"").unwrap().name(), "two");
+    let urdf = embedded::text("planar4").unwrap();
+    assert_eq!(read("misnamed.toml", urdf).unwrap().joints(), embedded::get("planar4").unwrap().joints());
+    let yaml = read("arm.urdf", "robot:\n  name: arm\n").unwrap_err().to_string();
+    assert!(yaml.contains("this is not XML"), "{yaml}");
+    let wrong = read("wrong.toml", "planar = [1]\ncolor = 1").unwrap_err();
+    assert!(wrong.to_string().contains("wrong.toml:2:1: a table of a robot has no key `color`"), "{wrong}");
+    assert_eq!(wrong.diagnostics().len(), 1);
+}
