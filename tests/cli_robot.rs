@@ -221,7 +221,7 @@ fn what_was_ignored_is_said_when_asked() {
         [&["robot", "show", "mobile.urdf", "-v"][..], &["robot", "export", "mobile.urdf", "--verbose"]]
     {
         let err = desk.run(command).expect(0).err;
-        assert!(err.contains("mobile.urdf:11:3: note: ignored"), "{err}");
+        assert!(err.contains("mobile.urdf:10:3: note: ignored"), "{err}");
         assert!(err.contains("`<transmission>` (1), `<gazebo>` (1)"), "{err}");
     }
 }

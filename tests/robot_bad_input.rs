@@ -206,6 +206,15 @@ fn positions_outside_the_limits_are_named() {
 }
 
 #[test]
+fn an_axis_of_any_length_keeps_its_direction() {
+    let robot = read("axis_tiny_or_huge.urdf");
+    let axis = |name: &str| robot.joint(name).unwrap().axis;
+    assert_eq!(axis("tiny"), kinstep::nalgebra::Vector3::z());
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    assert!((axis("huge") - kinstep::nalgebra::Vector3::new(0.0, half, half)).norm() < 1e-15);
+}
+
+#[test]
 fn quaternions_keep_their_digits_where_angles_would_lose_them() {
     // A pitch of 89.9 degrees, where conversion to roll, pitch and yaw snaps to 90.
     let half = (89.9f64).to_radians() / 2.0;

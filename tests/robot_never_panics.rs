@@ -130,7 +130,7 @@ impl Change {
     fn apply(&self, text: &str) -> String {
         let document = roxmltree::Document::parse(text);
         let Ok(document) = document else { return text.to_owned() };
-        let inner = document.descendants().filter(|node| node.is_element()).skip(1);
+        let inner = document.descendants().filter(roxmltree::Node::is_element).skip(1);
         let elements: Vec<_> = inner.map(|node| node.range()).collect();
         let attributes = document.descendants().flat_map(|node| node.attributes());
         let values: Vec<_> = attributes.map(|attribute| attribute.range_value()).collect();
@@ -189,7 +189,7 @@ fn use_it(robot: &Robot, is_tame: bool) -> Result<(), TestCaseError> {
     }
     if let Ok(text) = robot.to_urdf() {
         let again = Robot::from_urdf(&text);
-        prop_assert!(again.is_ok_and(|again| again.joints() == robot.joints()), "{}", text);
+        prop_assert!(again.is_ok_and(|again| is_same(robot, &again)), "{}", text);
     }
     for joint in robot.joints() {
         if let Ok(locked) = robot.with_locked(&joint.name, &[0.0]) {
@@ -203,9 +203,28 @@ fn use_it(robot: &Robot, is_tame: bool) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// Whether two robots differ by nothing but the last places of rotations.
+fn is_same(one: &Robot, other: &Robot) -> bool {
+    let origins = |one: &IsometryMatrix3<f64>, other: &IsometryMatrix3<f64>| {
+        one.translation == other.translation
+            && (one.rotation.matrix() - other.rotation.matrix()).amax() < 1e-14
+    };
+    let alike = one.joints().iter().zip(other.joints()).all(|(one, other)| {
+        (&one.name, one.kind, one.limits, one.mimic) == (&other.name, other.kind, other.limits, other.mimic)
+            && one.axis == other.axis
+            && origins(&one.origin, &other.origin)
+    });
+    alike && one.links() == other.links() && one.joints().len() == other.joints().len()
+}
+
 /// So many cases, the same in every run.
 fn cases(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, rng_seed: RngSeed::Fixed(20_240_229), ..ProptestConfig::default() }
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(20_240_229),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
 }
 
 proptest! {
@@ -213,7 +232,9 @@ proptest! {
     #[test]
     fn reading_a_damaged_file_gives_a_robot_or_an_error(damages in prop::collection::vec(damage(), 1..6)) {
         let mut bytes = SOUND.as_bytes().to_vec();
-        damages.iter().for_each(|damage| damage.apply(&mut bytes));
+        for damage in &damages {
+            damage.apply(&mut bytes);
+        }
         if let Ok(robot) = Robot::from_urdf_bytes(&bytes, &UrdfOptions::default()) {
             use_it(&robot, true)?;
         }
@@ -233,7 +254,9 @@ proptest! {
     #[test]
     fn reading_a_damaged_table_or_calibration_gives_a_value_or_an_error(damages in prop::collection::vec(damage(), 1..6)) {
         let mut bytes = TABLE.as_bytes().to_vec();
-        damages.iter().for_each(|damage| damage.apply(&mut bytes));
+        for damage in &damages {
+            damage.apply(&mut bytes);
+        }
         let text = String::from_utf8_lossy(&bytes);
         if let Ok(Ok(robot)) = DhTable::from_toml(&text).map(|table| Robot::from_dh(&table)) {
             use_it(&robot, true)?;

@@ -176,12 +176,11 @@ impl RobotCard {
             0 => String::new(),
             n => format!(" ({n} of them by following another)"),
         };
-        let moving = self.joints.len() - fixed;
-        format!(
-            "{}: {} links, {moving} joints that move{following}, {fixed} fixed",
-            self.name,
-            self.links.len()
-        )
+        let moving = match self.joints.len() - fixed {
+            1 => "1 joint that moves".to_owned(),
+            n => format!("{n} joints that move"),
+        };
+        format!("{}: {} links, {moving}{following}, {fixed} fixed", self.name, self.links.len())
     }
 
     fn tree(&self) -> Table {
@@ -189,7 +188,8 @@ impl RobotCard {
         let limit = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), short);
         for row in &self.rows {
             let Some(joint) = row.joint.map(|joint| &self.joints[joint]) else {
-                table.row([row.drawn.clone()]);
+                let mark = if self.roots.len() > 1 { "(a root)" } else { "" };
+                table.row([row.drawn.as_str(), mark]);
                 continue;
             };
             let kind = joint

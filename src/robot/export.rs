@@ -133,7 +133,7 @@ fn number(value: f64) -> String {
     if value == 0.0 || (1e-5..1e9).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
 }
 
-/// A name as the value of an attribute; characters that a reader would turn into blanks are written by their numbers.
+/// A name as the value of an attribute; characters that a reader would take for something else are written by their numbers.
 fn escaped(name: &str) -> String {
     let mut text = String::with_capacity(name.len());
     for c in name.chars() {
@@ -142,7 +142,8 @@ fn escaped(name: &str) -> String {
             '<' => text.push_str("&lt;"),
             '>' => text.push_str("&gt;"),
             '"' => text.push_str("&quot;"),
-            '\t' | '\n' | '\r' => {
+            // A `${` would be taken for xacro.
+            '\t' | '\n' | '\r' | '$' => {
                 let _ = write!(text, "&#{};", u32::from(c));
             }
             // No reader accepts the other control characters; a name with them can only have been made by a program.
@@ -177,6 +178,6 @@ mod tests {
         for value in [0.0, 0.1, -1.0 / 3.0, 1e-300, 1.797e308, 123_456_789.123_456_78] {
             assert_eq!(number(value).parse::<f64>().unwrap(), value);
         }
-        assert_eq!(escaped("a<b>&\"c\"\n"), "a&lt;b&gt;&amp;&quot;c&quot;&#10;");
+        assert_eq!(escaped("a<b>&\"c\"\n${d}"), "a&lt;b&gt;&amp;&quot;c&quot;&#10;&#36;{d}");
     }
 }

@@ -37,6 +37,8 @@ fn table_text<'a>(path: &Path, bytes: &'a [u8]) -> Option<&'a str> {
     let text = std::str::from_utf8(bytes).ok().filter(|text| text.len() <= LONGEST)?;
     let begin = text.trim_start_matches('\u{feff}').trim_ascii_start();
     let is_named = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-    let is_toml = || !begin.is_empty() && toml::de::DeTable::parse(begin).is_ok();
+    let is_toml = || {
+        !begin.is_empty() && toml::de::DeTable::parse(begin).is_ok_and(|table| !table.get_ref().is_empty())
+    };
     (!begin.starts_with('<') && (is_named || is_toml())).then_some(text)
 }

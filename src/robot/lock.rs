@@ -168,6 +168,7 @@ fn held(joint: &Joint, values: &[f64]) -> Result<IsometryMatrix3<f64>, LockError
 fn fix(joint: &mut Joint, held: &IsometryMatrix3<f64>) {
     joint.place(joint.origin * held);
     joint.kind = JointKind::Fixed;
+    joint.axis = Vector3::x();
     joint.limits = Limits::UNLIMITED;
     joint.mimic = None;
 }

@@ -147,7 +147,7 @@ pub struct Joint {
     pub child: usize,
     /// Pose of the child's frame in the parent's at joint position zero.
     pub origin: IsometryMatrix3<f64>,
-    /// Unit axis in the child's frame.
+    /// Unit axis in the child's frame; x where the joint is fixed.
     pub axis: Vector3<f64>,
     /// The joint's own limits (of a mimic joint too).
     pub limits: Limits,

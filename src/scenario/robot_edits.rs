@@ -31,14 +31,13 @@ fn refusal(error: &CalibrationError, file: &Path, text: &str) -> ScenarioError {
         }
         _ => None,
     };
-    let (message, line, column) = match first {
-        Some(first) => (first.message.clone(), first.line, first.column),
-        None => {
-            let message = error.to_string();
-            let line = error.line().unwrap_or(1);
-            let bare = message.strip_prefix(&format!("line {line}: ")).unwrap_or(&message).to_owned();
-            (bare, line, 1)
-        }
+    let (message, line, column) = if let Some(first) = first {
+        (first.message.clone(), first.line, first.column)
+    } else {
+        let message = error.to_string();
+        let line = error.line().unwrap_or(1);
+        let bare = message.strip_prefix(&format!("line {line}: ")).unwrap_or(&message).to_owned();
+        (bare, line, 1)
     };
     let place = Place::of_line(Some(name), text, line, column);
     ScenarioError::new(ErrorKind::Robot, message).or_placed(Some(place))

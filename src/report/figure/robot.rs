@@ -4,11 +4,12 @@ use nalgebra::{IsometryMatrix3, Vector3};
 
 use super::axis::{Axis, Scale};
 use super::figure::{Figure, Mark, Shape};
+use super::style::{FONT_SIZE, PLOT, text_width};
 use crate::robot::{Joint, JointKind, Robot};
 
-/// Half the length of a drawn axis, and how near two places are one, in sizes of the robot.
+/// Half the length of a drawn axis, and how thick a robot may be that lies in a plane, in sizes of the robot.
 const AXIS: f64 = 0.045;
-const NEAR: f64 = 0.02;
+const THIN: f64 = 0.02;
 
 /// Colours and dashes of what turns, slides, or moves in several directions.
 const TURNS: usize = 1;
@@ -59,8 +60,8 @@ impl<'r> Scene<'r> {
         let side = View { name: "side", title: "along y", labels: ["x [m]", "z [m]"], right: x, up: z };
         let front = View { name: "front", title: "against x", labels: ["y [m]", "z [m]"], right: y, up: z };
         let is_flat = |axis: usize| {
-            spread(self.poses.iter().map(|pose| pose.translation.vector[axis])) < NEAR * self.size
-                && self.moving_axes().all(|(_, direction)| direction[axis].abs() > 0.99)
+            spread(self.poses.iter().map(|pose| pose.translation.vector[axis])) < THIN * self.size
+                && self.moving_axes().all(|(joint, direction)| self.stays_flat(joint, direction[axis].abs()))
         };
         match [2, 1, 0].into_iter().find(|&axis| is_flat(axis)) {
             Some(2) => vec![top],
@@ -68,6 +69,11 @@ impl<'r> Scene<'r> {
             Some(_) => vec![front],
             None => vec![slanted(), front, side, top],
         }
+    }
+
+    /// Whether a joint moves within a plane to which its axis has this component: turns about it, slides along it.
+    fn stays_flat(&self, joint: usize, normal: f64) -> bool {
+        if self.robot.joints()[joint].kind.is_rotation() { normal > 0.99 } else { normal < 0.01 }
     }
 
     /// The joints that turn or slide, with the directions of their axes in the root.
@@ -86,16 +92,19 @@ impl<'r> Scene<'r> {
         marks.extend(self.axes(view, "axis of a slide", SLIDES, false));
         marks.extend(self.ends(view));
         marks.extend(self.joints(view));
-        marks.extend(self.numbers(view));
         let places: Vec<(f64, f64)> = marks.iter().flat_map(points_of).collect();
-        let range = |values: Vec<f64>| self.range(&values);
-        let [x, y] = view.labels;
-        let column = |label: &str| label.split(' ').next().unwrap_or_default().to_owned();
+        let x = self.range(&places.iter().map(|place| place.0).collect::<Vec<_>>());
+        let y = self.range(&places.iter().map(|place| place.1).collect::<Vec<_>>());
+        marks.extend(self.numbers(view, (PLOT / (x.1 - x.0)).min(PLOT * 0.85 / (y.1 - y.0))));
+        let axis = |label: &str, range| {
+            let column = label.split(' ').next().unwrap_or_default();
+            Axis::new(label, column, Scale::Linear, range)
+        };
         Figure {
             name: view.name.to_owned(),
             title: format!("{}, {}", self.robot.name(), view.title),
-            x: Axis::new(x, &column(x), Scale::Linear, range(places.iter().map(|p| p.0).collect())),
-            y: Axis::new(y, &column(y), Scale::Linear, range(places.iter().map(|p| p.1).collect())),
+            x: axis(view.labels[0], x),
+            y: axis(view.labels[1], y),
             is_isometric: true,
             parameter: None,
             marks,
@@ -168,13 +177,17 @@ impl<'r> Scene<'r> {
         ]
     }
 
-    /// The numbers of the joints; those of one place stand together.
-    fn numbers(&self, view: &View) -> Vec<Mark> {
+    /// The numbers of the joints, on a drawing of `scale` pixels a metre; those that would overlap stand together.
+    fn numbers(&self, view: &View, scale: f64) -> Vec<Mark> {
         let mut places: Vec<((f64, f64), Vec<usize>)> = Vec::new();
         for (number, joint) in self.numbered() {
             let at = view.at(&self.place(joint.child));
-            let near = |other: &(f64, f64)| (other.0 - at.0).hypot(other.1 - at.1) < NEAR * self.size;
-            match places.iter_mut().find(|(place, _)| near(place)) {
+            let overlaps = |place: &(f64, f64), numbers: &[usize]| {
+                let (across, up) = ((at.0 - place.0) * scale, (at.1 - place.1) * scale);
+                let wide = |text: &str| text_width(text, FONT_SIZE) + 4.0;
+                up.abs() < FONT_SIZE && -wide(&number.to_string()) < across && across < wide(&runs(numbers))
+            };
+            match places.iter_mut().find(|(place, numbers)| overlaps(place, numbers)) {
                 Some((_, numbers)) => numbers.push(number),
                 None => places.push((at, vec![number])),
             }

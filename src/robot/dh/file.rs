@@ -56,14 +56,18 @@ fn read(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhTable> {
             }
             let convention = convention(file, report);
             let count = entries.len();
-            let rows = entries.iter().enumerate().filter_map(|(index, entry)| {
-                let Some(table) = entry.get_ref().as_table() else {
-                    wrong_type("joint", "rows that are tables", entry, report);
-                    return None;
-                };
-                row(&Entries { table, offset: entry.span().start }, index, count, report)
-            });
-            (convention?, rows.collect())
+            let rows: Vec<DhRow> = entries
+                .iter()
+                .enumerate()
+                .filter_map(|(index, entry)| {
+                    let Some(table) = entry.get_ref().as_table() else {
+                        wrong_type("joint", "rows that are tables", entry, report);
+                        return None;
+                    };
+                    row(&Entries { table, offset: entry.span().start }, index, count, report)
+                })
+                .collect();
+            (convention?, rows)
         }
         (Some(second), Some(_)) => {
             report.error(second.span().start, "`planar` and `joint` both describe the arm; keep one of them");

@@ -290,7 +290,7 @@ impl Serial {
             parent: child - 1,
             child,
             origin,
-            axis: Vector3::z(),
+            axis: if row.kind == JointKind::Fixed { Vector3::x() } else { Vector3::z() },
             limits,
             mimic: None,
             defect: None,

@@ -31,7 +31,7 @@ pub(super) fn read(text: &str, options: &UrdfOptions, report: &mut Report<'_>) -
         return None;
     }
     let outline = outline::outline(text);
-    if let Some((offset, message)) = refused(&outline) {
+    if let Some((offset, message)) = refused(text, &outline) {
         report.error(offset, message);
         return None;
     }
@@ -50,8 +50,11 @@ pub(super) fn read(text: &str, options: &UrdfOptions, report: &mut Report<'_>) -
 }
 
 /// What is refused whatever else the text holds: DTDs, excess, xacro.
-fn refused(outline: &Outline<'_>) -> Option<(usize, String)> {
+fn refused(text: &str, outline: &Outline<'_>) -> Option<(usize, String)> {
     match outline.stop {
+        Some(Stop::Dtd(offset)) if is_web_page(text, offset) => {
+            Some((offset, "this is a web page, not URDF; fetch the file itself".to_owned()))
+        }
         Some(Stop::Dtd(offset)) => Some((
             offset,
             "a DTD (`<!DOCTYPE ...>`) is not allowed: entities are never expanded and no file is fetched; \
@@ -74,6 +77,11 @@ fn refused(outline: &Outline<'_>) -> Option<(usize, String)> {
             (offset, cause.to_owned())
         }),
     }
+}
+
+fn is_web_page(text: &str, doctype: usize) -> bool {
+    let head = text.get(doctype..doctype + 14).unwrap_or_default();
+    head.eq_ignore_ascii_case("<!doctype html")
 }
 
 fn element_name(name: &str) -> String {
@@ -105,6 +113,10 @@ fn malformed(text: &str, outline: &Outline<'_>, error: &Error, report: &Report<'
     let start = text.len() - text.trim_ascii_start().len();
     if !text[start..].starts_with('<') {
         let line = text[start..].lines().next().unwrap_or_default();
+        if line.starts_with("version https://git-lfs") {
+            let cause = "this is a pointer of Git LFS and not the file itself; run `git lfs pull`";
+            return (start, cause.to_owned());
+        }
         return (
             start,
             format!("this is not XML: it begins with {}, expected `<robot name=...>`", quote(line)),
@@ -216,7 +228,15 @@ fn read_document(
     let (links, mut joints, _) = (links?, joints?, version?);
     if links.is_empty() {
         if element::children_named(root, "link").next().is_none() {
-            report.error(element::offset(root), "the robot has no link: there is nothing to move");
+            let is_srdf = ["group", "disable_collisions", "virtual_joint"]
+                .into_iter()
+                .any(|name| element::children_named(root, name).next().is_some());
+            let cause = if is_srdf {
+                "the robot has no link: this is an SRDF (MoveIt's groups and poses); name the URDF that it belongs to"
+            } else {
+                "the robot has no link: there is nothing to move"
+            };
+            report.error(element::offset(root), cause);
         }
         return None;
     }
@@ -236,6 +256,7 @@ fn check_root(root: Node<'_, '_>, report: &mut Report<'_>) -> bool {
         "mujoco" | "mujocoinclude" => {
             "this is MJCF (MuJoCo), not URDF; look for the robot's URDF, from which MJCF files are usually made"
         }
+        "html" => "this is a web page; fetch the file itself",
         "COLLADA" => "this is a COLLADA mesh, not URDF; name the .urdf file",
         _ if name.eq_ignore_ascii_case("robot") => "write `<robot>`, in lower case",
         _ => "a URDF begins with `<robot>`",

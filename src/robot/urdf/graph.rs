@@ -288,6 +288,7 @@ fn joint(
         mimic::Motion::Still { at } => {
             joint.place(joint.origin * displacement(joint.kind, joint.axis, at));
             joint.kind = JointKind::Fixed;
+            (joint.axis, joint.limits) = (Vector3::x(), Limits::UNLIMITED);
         }
         // A driver without a place in the tree is defective, and then so is its follower.
         mimic::Motion::Follows { driver, multiplier, offset } => {

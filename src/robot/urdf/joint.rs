@@ -11,6 +11,7 @@ use super::limit;
 use super::link::name_of;
 use super::report::Report;
 use super::{MAX_JOINTS, UrdfOptions, number};
+use crate::math::figure;
 use crate::robot::names::{list, quote};
 use crate::robot::{Defect, JointKind};
 
@@ -294,7 +295,7 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
         if (length - 1.0).abs() > UNIT_TOLERANCE {
             self.note(
                 place,
-                &format!("its axis {} has length {length}; normalised", quote(attribute.value())),
+                &format!("its axis {} has length {}; normalised", quote(attribute.value()), figure(length)),
             );
         }
         let _ = write!(self.joint.values, "<axis xyz=\"{text}\"/>");
