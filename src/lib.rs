@@ -6,6 +6,7 @@
 
 pub mod formula;
 pub mod integrate;
+pub mod inverse;
 pub mod law;
 pub mod math;
 pub mod planner;

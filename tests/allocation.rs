@@ -36,6 +36,32 @@ fn a_thousand_steps_of_two_seven_joint_arms_allocate_nothing() {
     }
 }
 
+/// Two arms on a common torso, each on a circle with its orientation held.
+fn shared() -> Planner {
+    let arm = |tip: &str, side: f64| {
+        let chain = embedded::get("torso14").unwrap().chain("floor", tip).unwrap();
+        let q0 = vec![0.2, 0.1, 0.3 * side, 0.4, -1.2, 0.2, 0.5, 0.1];
+        let pose = chain.forward(&q0, &mut chain.scratch()).pose();
+        let path = Planar::new(Circle { radius: 0.05 }, Plane::Yz, 0.0, 0.0, TAU);
+        let motion = Motion::from_pose(path, Sin2, 2.0, &pose);
+        Arm::new(tip, chain, q0, TaskKind::Pose, motion).on_machine("torso")
+    };
+    let arms = [arm("left_tool", 1.0), arm("right_tool", -1.0)];
+    scheme::dtsmp(arms, 0.001, 0.4).duration(2.0).build().unwrap()
+}
+
+#[test]
+fn a_thousand_steps_of_arms_with_a_common_torso_allocate_nothing() {
+    let mut planner = shared();
+    let spent = allocation_counter::measure(|| {
+        for _ in 0..1000 {
+            planner.step();
+        }
+    });
+    assert_eq!((planner.index(), planner.stop()), (1000, None));
+    assert_eq!(spent.count_total, 0, "{spent:?}");
+}
+
 #[test]
 fn the_counter_counts() {
     let spent = allocation_counter::measure(|| drop(std::hint::black_box(planner(Start::Rk4))));

@@ -77,6 +77,64 @@ fn links_that_nothing_moves_between_have_a_pose_and_can_not_follow_a_path() {
     assert!(error["message"].as_str().unwrap().contains("nothing moves between"), "{error}");
 }
 
+const HAND: [&str; 5] = ["panda", "--base", "panda_link0", "--tip", "panda_hand_tcp"];
+
+#[test]
+fn joint_positions_for_a_pose_lead_to_that_pose() {
+    let place = ["--position", "0.5, 0.1, 0.3"];
+    let typed = [&["robot", "ik", "--json", "--orientation", "pi,0,pi/2"], &HAND[..], &place].concat();
+    let answer = kinstep(&typed).expect(0).json();
+    assert_eq!((&answer["found"], answer["q"].as_array().unwrap().len()), (&json!(true), 7));
+    let q: Vec<String> = numbers(&answer["q"]).iter().map(f64::to_string).collect();
+    let pose =
+        kinstep(&[&["robot", "fk", "--json", "--q", &q.join(",")], &HAND[..]].concat()).expect(0).json();
+    assert_eq!((&pose["position"], &pose["rotation"]), (&answer["position"], &answer["rotation"]));
+    for (got, wanted) in numbers(&pose["position"]).iter().zip([0.5, 0.1, 0.3]) {
+        assert!((got - wanted).abs() < 1e-12);
+    }
+    // The same turn as a quaternion: about x by pi, then about z by pi/2.
+    let half = std::f64::consts::FRAC_1_SQRT_2.to_string();
+    let quaternion = format!("{half},{half},0,0");
+    let by = |orientation: &str| {
+        let typed = [&["robot", "ik", "--json", "--orientation", orientation], &HAND[..], &place].concat();
+        numbers(&kinstep(&typed).expect(0).json()["q"])
+    };
+    for (one, other) in by("pi,0,pi/2").iter().zip(by(&quaternion)) {
+        assert!((one - other).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn a_place_out_of_reach_is_answered_with_the_nearest_one() {
+    let typed = ["robot", "ik", "planar4", "--base", "base", "--tip", "tip", "--position", "4.8,6.4"];
+    let answer = kinstep(&[&typed[..], &["--json"]].concat()).expect(5).json();
+    assert_eq!(answer["found"], json!(false));
+    assert!((answer["distance"].as_f64().unwrap() - 4.0).abs() < 1e-9, "{answer}");
+    let text = kinstep(&typed).expect(5).out;
+    assert!(text.starts_with("Not reached within the limits") && text.contains("(2.4000, 3.2000"), "{text}");
+}
+
+#[test]
+fn a_target_that_is_none_says_what_would_be() {
+    let ik = |more: &[&str]| kinstep(&[&["robot", "ik", "--json"], &HAND[..], more].concat());
+    let at = ["--position", "0.5,0,0.3"];
+    for (more, said) in [
+        (&["--position", "0.5"][..], "expected three numbers"),
+        (&["--position", "1e9,0,0"], "beyond any arm"),
+        (&["--position", "0.5,x,0"], "'x' is not known"),
+        (&["--position", "0.5,0", "--axis", "0,0,1"], "expected three numbers"),
+        (&[&at[..], &["--axis", "0,0,0"]].concat(), "points nowhere"),
+        (&[&at[..], &["--axis", "1,0"]].concat(), "expected three numbers, got 2"),
+        (&[&at[..], &["--orientation", "0,0,0,2"]].concat(), "its length is not 1"),
+        (&[&at[..], &["--orientation", "0,0"]].concat(), "roll, pitch, yaw"),
+        (&[&at[..], &["--q0", "0,0"]].concat(), "got 2"),
+    ] {
+        let error = ik(more).expect(2).error();
+        assert!(error["message"].as_str().unwrap().contains(said), "{more:?}: {error}");
+    }
+    ik(&[&at[..], &["--axis", "0,0,-1", "--q0", "0,0,0,-1.5,0,1.8,0"]].concat()).expect(0);
+}
+
 #[test]
 fn the_robots_are_listed_shown_and_sound() {
     let list = kinstep(&["robot", "list", "--json"]).expect(0).json();

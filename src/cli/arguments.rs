@@ -54,7 +54,7 @@ Setting one of law.h and law.gain takes the other away.")]
         after_help = "Example:\n  kinstep formula show --difference 24,-5,-12,-6,-4,3 --denominator 48"
     )]
     Formula(FormulaCommand),
-    /// Look at robots: list, show, draw, check, pose and Jacobian, write as URDF
+    /// Look at robots: list, show, draw, check, pose and Jacobian, inverse kinematics, write as URDF
     #[command(subcommand, after_help = "Example:\n  kinstep robot show panda")]
     Robot(RobotCommand),
     /// Print the JSON Schema of a kind of file
@@ -397,6 +397,16 @@ Examples:
         after_help = "Example:\n  kinstep robot jacobian planar4 --base base --tip tip --q 0,pi/2,0,0 --json"
     )]
     Jacobian(ChainArguments),
+    /// Joint positions that bring a tip to a pose, a position, or a position with a direction of its z axis, within the
+    /// limits; exit 5, and the nearest place, if none are found
+    #[command(after_help = "\
+Examples:
+  kinstep robot ik panda --base panda_link0 --tip panda_hand_tcp --position 0.5,0.1,0.3 --orientation pi,0,0
+  kinstep robot ik ur5e --base base_link --tip tool0 --position 0.4,0.2,0.3 --axis 0,0,-1 --json
+  kinstep robot ik planar4 --base base --tip tip --position 2,1 --q0 0.1,0.2,0.3,0.4
+
+Without --q0 the answer nearest to the middle of the limits is taken. The same arguments always give the same answer.")]
+    Ik(InverseArguments),
     /// Write a robot as URDF: a table, or a URDF with its calibration and its locked joints in it
     #[command(after_help = "\
 Examples:
@@ -487,6 +497,48 @@ pub(super) struct ChainArguments {
     /// Pose of a tool in the tip, "x y z roll pitch yaw" in m and rad: the chain then ends there
     #[arg(long, value_name = "POSE", allow_hyphen_values = true)]
     pub(super) tool: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct InverseArguments {
+    #[command(flatten)]
+    pub(super) file: RobotFile,
+
+    /// Link at which the chain begins
+    #[arg(long, value_name = "LINK")]
+    pub(super) base: String,
+
+    /// Link at which the chain ends
+    #[arg(long, value_name = "LINK")]
+    pub(super) tip: String,
+
+    /// Where the tip should be in the base's axes in m; of two numbers, x and y, z is free
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(super) position: String,
+
+    /// How it should be turned: roll, pitch and yaw about the base's axes in rad as in URDF, or a unit quaternion x,y,z,w
+    #[arg(long, value_name = "R,P,Y", allow_hyphen_values = true)]
+    pub(super) orientation: Option<String>,
+
+    /// Where its z axis should point, in the base's axes; the turn about it is free
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, conflicts_with = "orientation")]
+    pub(super) axis: Option<String>,
+
+    /// Joint positions that the answer should be near, in path order in rad or m
+    #[arg(long, value_name = "Q,...", allow_hyphen_values = true)]
+    pub(super) q0: Option<String>,
+
+    /// Pose of a tool in the tip, "x y z roll pitch yaw" in m and rad: the chain then ends there
+    #[arg(long, value_name = "POSE", allow_hyphen_values = true)]
+    pub(super) tool: Option<String>,
+
+    /// Starting places to try at most
+    #[arg(long, default_value_t = 100)]
+    pub(super) starts: usize,
+
+    /// Seed of the starting places
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
 }
 
 #[derive(Clone, Copy, Debug, Args)]

@@ -72,6 +72,7 @@ impl From<ScenarioError> for Failure {
             ErrorKind::File => Exit::File,
         };
         let file = error.place.as_ref().and_then(|place| place.file.clone()).or(error.file);
-        Self { exit, message: error.message, file, place: error.place, also: Vec::new() }
+        let also = error.also.into_iter().map(Self::from).collect();
+        Self { exit, message: error.message, file, place: error.place, also }
     }
 }

@@ -17,6 +17,7 @@ mod progress;
 mod reproduce;
 mod robot;
 mod robot_export;
+mod robot_ik;
 mod robot_show;
 mod schema;
 

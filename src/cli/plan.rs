@@ -11,7 +11,7 @@ use crate::formula::{Formula, FormulaTable};
 use crate::math::figure;
 use crate::planner::{LimitKind, Plan, PlanStatus, Planner};
 use crate::report::{PlanCsv, PlanFormat, PlanJson, PlanText};
-use crate::scenario::{FormulaRows, Scenario, ScenarioText};
+use crate::scenario::{FormulaRows, Real, Scenario, ScenarioText};
 
 /// The scenario that runs without a file.
 const BUILTIN: &str = include_str!("../../examples/dual_panda.toml");
@@ -30,6 +30,7 @@ pub(super) fn run(
     // No row has an empty id: without a formula there is nothing to refuse.
     let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
     let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
+    keep_starts(&mut scenario, &planner);
     let folder =
         arguments.out.as_deref().map(|path| Folder::open(path, arguments.force, &NAMES)).transpose()?;
     let mut plan = run_planner(planner);
@@ -66,6 +67,13 @@ pub(super) fn run(
         ))?;
     }
     Ok(exit(&plan))
+}
+
+/// Puts joint positions that were solved for into the scenario: what is written down says what was run.
+fn keep_starts(scenario: &mut Scenario, planner: &Planner) {
+    for (i, arm) in scenario.arm.iter_mut().enumerate().filter(|(_, arm)| arm.start_pose.is_some()) {
+        arm.q0 = planner.arm(i).positions.iter().map(|&q| Real::from(q)).collect();
+    }
 }
 
 fn scenario_text(arguments: &PlanArguments) -> Result<ScenarioText, Failure> {

@@ -9,7 +9,7 @@ use super::arguments::{ChainArguments, RobotCommand, RobotFile, RobotShow};
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
 use super::robot_show::RobotCard;
-use super::{formula_plot, robot_export};
+use super::{formula_plot, robot_export, robot_ik};
 use crate::report::Table;
 use crate::report::figure::robot_figures;
 use crate::robot::{Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded};
@@ -23,6 +23,7 @@ pub(super) fn run(command: &RobotCommand, output: &mut Output) -> Result<Exit, F
         RobotCommand::Fk(arguments) => kinematics(arguments, false, output),
         RobotCommand::Jacobian(arguments) => kinematics(arguments, true, output),
         RobotCommand::Export(arguments) => robot_export::run(arguments, output),
+        RobotCommand::Ik(arguments) => robot_ik::run(arguments, output),
     }
 }
 
@@ -245,12 +246,7 @@ struct Kinematics {
 impl Kinematics {
     fn new(arguments: &ChainArguments, shows_jacobian: bool, output: &Output) -> Result<Self, Failure> {
         let ChainArguments { file, base, tip, q, tool } = arguments;
-        let (robot, tip) = tooled(read(file, output)?, tip, tool.as_deref())?;
-        let chain = robot.chain(base, &tip).map_err(|e| {
-            let is_free = matches!(e, ChainError::UnsupportedJoint { .. });
-            let remedy = if is_free { ", or hold the joint still with --lock JOINT=0" } else { "" };
-            Failure::new(Exit::Robot, format!("{e}{remedy}")).in_file(&file.robot)
-        })?;
+        let (chain, tip) = tooled_chain(file, [base, tip], tool.as_deref(), output)?;
         let q = joint_positions("--q", q.as_deref(), &chain)?;
         let mut scratch = chain.scratch();
         let posed = chain.forward(&q, &mut scratch);
@@ -272,6 +268,22 @@ impl Kinematics {
             ends: [base.clone(), tip],
         })
     }
+}
+
+/// Returns the chain between two links of a robot, with a tool on the tip, and the link at which it then ends.
+pub(super) fn tooled_chain(
+    file: &RobotFile,
+    [base, tip]: [&str; 2],
+    tool: Option<&str>,
+    output: &Output,
+) -> Result<(Chain, String), Failure> {
+    let (robot, tip) = tooled(read(file, output)?, tip, tool)?;
+    let chain = robot.chain(base, &tip).map_err(|e| {
+        let is_free = matches!(e, ChainError::UnsupportedJoint { .. });
+        let remedy = if is_free { ", or hold the joint still with --lock JOINT=0" } else { "" };
+        Failure::new(Exit::Robot, format!("{e}{remedy}")).in_file(&file.robot)
+    })?;
+    Ok((chain, tip))
 }
 
 /// Returns the robot with a tool on `tip`, and the link at which the chain then ends.

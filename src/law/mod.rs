@@ -2,9 +2,12 @@
 
 mod criterion;
 mod pseudoinverse;
+mod stacked;
 
 pub use criterion::Criterion;
 pub use pseudoinverse::Pseudoinverse;
+
+pub(crate) use stacked::StackedPseudoinverse;
 
 use nalgebra::Vector6;
 
@@ -46,6 +49,12 @@ pub trait Law: Send {
 
     /// The singular value below which this law calls a configuration singular.
     fn threshold(&self) -> f64;
+
+    /// The threshold of a law that is the least-norm law and nothing else: while the smallest singular value is certain to
+    /// lie above it, the planner resolves several arms at once, with the same answer to the last bit.
+    fn least_norm_threshold(&self) -> Option<f64> {
+        None
+    }
 
     /// The rate [1/s] at which a null-space criterion of this law pulls the joints, if it has one. It is integrated
     /// explicitly, so the planner refuses a `sigma` at which the row could not follow it.

@@ -25,7 +25,6 @@ pub struct Pseudoinverse {
 
 /// The decomposition's workspace in the size of the task.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "one value per arm, never moved")]
 enum Decomposition {
     Two(SingularValues<2>),
     Three(SingularValues<3>),
@@ -121,6 +120,10 @@ impl Law for Pseudoinverse {
 
     fn threshold(&self) -> f64 {
         self.threshold
+    }
+
+    fn least_norm_threshold(&self) -> Option<f64> {
+        self.criterion.is_none().then_some(self.threshold)
     }
 
     fn criterion_rate(&self) -> Option<f64> {

@@ -43,4 +43,5 @@ pub(crate) use figure::figure;
 pub(crate) use interpolation::interpolate;
 pub(crate) use rational::{common_denominator, shortened};
 pub(crate) use routh::{half_plane_image, last_hurwitz_determinant};
+pub(crate) use singular::RowRotations;
 pub(crate) use wide::Wide;

@@ -11,19 +11,14 @@ const SWEEPS: usize = 30;
 /// accuracy, and the sweeps are bounded, so NaN ends the work like anything else.
 #[derive(Clone, Debug)]
 pub struct SingularValues<const M: usize> {
-    /// The rotated columns `U^T J`: row `i` is `s_i v_i^T`.
-    rotated: Vec<Vector6<f64>>,
-    /// Row `i` of `u` is the left singular vector of `values[i]`.
-    u: [[f64; M]; M],
+    rotations: RowRotations,
     values: [f64; M],
-    /// Columns of the matrix: at most this many singular values can differ from zero.
-    columns: usize,
 }
 
 impl<const M: usize> SingularValues<M> {
     /// A workspace for matrices of `n` columns, so that [`compute`](Self::compute) allocates nothing.
     pub fn with_capacity(n: usize) -> Self {
-        Self { rotated: Vec::with_capacity(n), u: [[0.0; M]; M], values: [0.0; M], columns: n }
+        Self { rotations: RowRotations::with_capacity(M, n), values: [0.0; M] }
     }
 
     /// The decomposition of the matrix with these columns.
@@ -35,25 +30,83 @@ impl<const M: usize> SingularValues<M> {
 
     /// Replaces the decomposition by that of the matrix with these columns.
     pub fn compute(&mut self, columns: &[Vector6<f64>]) {
-        self.columns = columns.len();
+        self.rotations.compute(columns.len(), |row, column| columns[column][row]);
+        self.values.copy_from_slice(&self.rotations.values);
+    }
+
+    /// The singular values, in no particular order.
+    pub fn values(&self) -> &[f64; M] {
+        &self.values
+    }
+
+    /// The smallest of the `min(M, n)` singular values that an `M x n` matrix can have.
+    pub fn smallest(&self) -> f64 {
+        self.rotations.smallest()
+    }
+
+    /// The largest singular value.
+    pub fn largest(&self) -> f64 {
+        self.values.iter().fold(0.0, |most: f64, &value| most.max(value))
+    }
+
+    /// Adds `sum_i v_i weight(s_i) (u_i . v)` to `out`: with `weight(s) = 1/s` the pseudoinverse applied to `v`,
+    /// with `s / (s^2 + lambda^2)` its damped form.
+    ///
+    /// A zero singular value contributes nothing: `weight` is not asked about it.
+    pub fn apply(&self, v: &[f64; M], weight: impl Fn(f64) -> f64, out: &mut [f64]) {
+        self.rotations.apply(v, weight, out);
+    }
+}
+
+/// The same for any number of rows.
+#[derive(Clone, Debug)]
+pub(crate) struct RowRotations {
+    rows: usize,
+    /// Columns of the matrix: at most this many singular values can differ from zero.
+    columns: usize,
+    /// `U^T J`, row after row: row `i` is `s_i v_i^T`.
+    rotated: Vec<f64>,
+    /// Row `i` is the left singular vector of `values[i]`.
+    u: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl RowRotations {
+    /// A workspace for matrices of `rows` rows and `columns` columns, so that [`compute`](Self::compute) allocates nothing.
+    pub(crate) fn with_capacity(rows: usize, columns: usize) -> Self {
+        Self {
+            rows,
+            columns,
+            rotated: Vec::with_capacity(rows * columns),
+            u: vec![0.0; rows * rows],
+            values: vec![0.0; rows],
+        }
+    }
+
+    /// Replaces the decomposition by that of the matrix whose entries `entry(row, column)` reads.
+    pub(crate) fn compute(&mut self, columns: usize, entry: impl Fn(usize, usize) -> f64) {
+        let rows = self.rows;
+        self.columns = columns;
         self.rotated.clear();
-        self.rotated.extend_from_slice(columns);
-        self.u = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
+        self.rotated.extend((0..rows * columns).map(|place| entry(place / columns, place % columns)));
+        self.u.fill(0.0);
+        self.u.iter_mut().step_by(rows + 1).for_each(|diagonal| *diagonal = 1.0);
         for _ in 0..SWEEPS {
             if !self.sweep() {
                 break;
             }
         }
-        for i in 0..M {
-            self.values[i] = self.rotated.iter().map(|c| c[i] * c[i]).sum::<f64>().sqrt();
+        for (i, value) in self.values.iter_mut().enumerate() {
+            let row = &self.rotated[i * columns..(i + 1) * columns];
+            *value = row.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
         }
         self.drop_impossible_values();
     }
 
     /// With fewer columns than rows the surplus singular values are zero; rounding leaves crumbs, which are cleared.
     fn drop_impossible_values(&mut self) {
-        for _ in self.columns..M {
-            let least = (0..M)
+        for _ in self.columns..self.rows {
+            let least = (0..self.rows)
                 .filter(|&i| self.values[i] > 0.0)
                 .min_by(|&a, &b| self.values[a].total_cmp(&self.values[b]));
             if let Some(i) = least.filter(|_| self.rank_bound() > self.columns) {
@@ -69,8 +122,8 @@ impl<const M: usize> SingularValues<M> {
     /// Rotates every pair of rows once; false when all were orthogonal already.
     fn sweep(&mut self) -> bool {
         let mut moved = false;
-        for p in 0..M {
-            for q in p + 1..M {
+        for p in 0..self.rows {
+            for q in p + 1..self.rows {
                 moved |= self.rotate(p, q);
             }
         }
@@ -78,11 +131,12 @@ impl<const M: usize> SingularValues<M> {
     }
 
     fn rotate(&mut self, p: usize, q: usize) -> bool {
+        let (a, b) = two_rows(&mut self.rotated, self.columns, p, q);
         let (mut pp, mut qq, mut pq) = (0.0, 0.0, 0.0);
-        for c in &self.rotated {
-            pp += c[p] * c[p];
-            qq += c[q] * c[q];
-            pq += c[p] * c[q];
+        for (a, b) in a.iter().zip(&*b) {
+            pp += a * a;
+            qq += b * b;
+            pq += a * b;
         }
         if !(pq.abs() > f64::EPSILON * (pp * qq).sqrt()) {
             return false;
@@ -90,51 +144,50 @@ impl<const M: usize> SingularValues<M> {
         let zeta = (qq - pp) / (2.0 * pq);
         let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
         let cosine = tangent.hypot(1.0).recip();
-        let sine = tangent * cosine;
-        for c in &mut self.rotated {
-            (c[p], c[q]) = (cosine * c[p] - sine * c[q], sine * c[p] + cosine * c[q]);
-        }
-        for j in 0..M {
-            let (a, b) = (self.u[p][j], self.u[q][j]);
-            self.u[p][j] = cosine * a - sine * b;
-            self.u[q][j] = sine * a + cosine * b;
-        }
+        let turn = (cosine, tangent * cosine);
+        turn_rows(a, b, turn);
+        let (a, b) = two_rows(&mut self.u, self.rows, p, q);
+        turn_rows(a, b, turn);
         true
     }
 
-    /// The singular values, in no particular order.
-    pub fn values(&self) -> &[f64; M] {
-        &self.values
+    /// The smallest of the `min(rows, columns)` singular values that such a matrix can have.
+    pub(crate) fn smallest(&self) -> f64 {
+        // In ascending order this is the value after the surplus ones; ties count by their place.
+        let surplus = self.rows.saturating_sub(self.columns);
+        let rank = |i: usize| {
+            let comes_before = |j: &usize| self.values[*j].total_cmp(&self.values[i]).then(j.cmp(&i)).is_lt();
+            (0..self.rows).filter(comes_before).count()
+        };
+        (0..self.rows).find(|&i| rank(i) == surplus).map_or(0.0, |i| self.values[i])
     }
 
-    /// The smallest of the `min(M, n)` singular values that an `M x n` matrix can have.
-    pub fn smallest(&self) -> f64 {
-        let mut sorted = self.values;
-        sorted.sort_unstable_by(|a, b| b.total_cmp(a));
-        sorted[..self.columns.min(M)].last().copied().unwrap_or(0.0)
-    }
-
-    /// The largest singular value.
-    pub fn largest(&self) -> f64 {
-        self.values.iter().fold(0.0, |most: f64, &value| most.max(value))
-    }
-
-    /// Adds `sum_i v_i weight(s_i) (u_i . v)` to `out`: with `weight(s) = 1/s` the pseudoinverse applied to `v`,
-    /// with `s / (s^2 + lambda^2)` its damped form.
-    ///
-    /// A zero singular value contributes nothing: `weight` is not asked about it.
-    pub fn apply(&self, v: &[f64; M], weight: impl Fn(f64) -> f64, out: &mut [f64]) {
-        for i in 0..M {
-            let s = self.values[i];
+    /// Adds `sum_i v_i weight(s_i) (u_i . v)` to `out`; a zero singular value contributes nothing.
+    pub(crate) fn apply(&self, v: &[f64], weight: impl Fn(f64) -> f64, out: &mut [f64]) {
+        for (i, &s) in self.values.iter().enumerate() {
             if s == 0.0 {
                 continue;
             }
-            let along: f64 = self.u[i].iter().zip(v).map(|(a, b)| a * b).sum();
+            let u = &self.u[i * self.rows..(i + 1) * self.rows];
+            let along: f64 = u.iter().zip(v).map(|(a, b)| a * b).sum();
             let factor = along * weight(s) / s;
-            for (entry, c) in out.iter_mut().zip(&self.rotated) {
-                *entry += factor * c[i];
+            let row = &self.rotated[i * self.columns..(i + 1) * self.columns];
+            for (entry, c) in out.iter_mut().zip(row) {
+                *entry += factor * c;
             }
         }
+    }
+}
+
+/// Rows `p < q` of a matrix that is stored row after row.
+fn two_rows(matrix: &mut [f64], columns: usize, p: usize, q: usize) -> (&mut [f64], &mut [f64]) {
+    let (head, tail) = matrix.split_at_mut(q * columns);
+    (&mut head[p * columns..(p + 1) * columns], &mut tail[..columns])
+}
+
+fn turn_rows(a: &mut [f64], b: &mut [f64], (cosine, sine): (f64, f64)) {
+    for (a, b) in a.iter_mut().zip(b) {
+        (*a, *b) = (cosine * *a - sine * *b, sine * *a + cosine * *b);
     }
 }
 

@@ -10,6 +10,8 @@ pub struct Arm {
     pub(super) task: TaskKind,
     pub(super) motion: Motion,
     pub(super) law: Box<dyn Law>,
+    pub(super) start_distance: Option<f64>,
+    pub(super) machine: Option<String>,
 }
 
 impl std::fmt::Debug for Arm {
@@ -24,13 +26,41 @@ impl Arm {
     ///
     /// The motion is given in world axes: mount the chain first ([`Chain::mounted`]).
     pub fn new(name: impl Into<String>, chain: Chain, q0: Vec<f64>, task: TaskKind, motion: Motion) -> Self {
-        Self { name: name.into(), chain, q0, task, motion, law: Box::new(Pseudoinverse::new()) }
+        Self {
+            name: name.into(),
+            chain,
+            q0,
+            task,
+            motion,
+            law: Box::new(Pseudoinverse::new()),
+            start_distance: None,
+            machine: None,
+        }
     }
 
     /// The same arm with another law.
     #[must_use]
     pub fn with_law(mut self, law: impl Law + 'static) -> Self {
         self.law = Box::new(law);
+        self
+    }
+
+    /// The same arm, with the remark that its start was solved for and leaves the tip at this distance [m, rad] from
+    /// where it was asked to be.
+    #[must_use]
+    pub fn with_start_distance(mut self, distance: f64) -> Self {
+        self.start_distance = Some(distance);
+        self
+    }
+
+    /// The same arm as a part of the machine of that name.
+    ///
+    /// Arms of one machine move it together: a joint name in the chains of two of them is one joint. Such arms are resolved
+    /// as one system, by the least-norm motion of all their joints that meets all their tasks, and have to start their
+    /// joints in common at the same positions.
+    #[must_use]
+    pub fn on_machine(mut self, machine: impl Into<String>) -> Self {
+        self.machine = Some(machine.into());
         self
     }
 
@@ -42,6 +72,12 @@ impl Arm {
     /// The chain it moves, mounted in the world.
     pub fn chain(&self) -> &Chain {
         &self.chain
+    }
+
+    /// Where the joint of that name starts [rad or m], if it is one of its own.
+    pub fn start_of(&self, joint: &str) -> Option<f64> {
+        let place = self.chain.joints().iter().position(|own| own.name == joint)?;
+        self.q0.get(place).copied()
     }
 
     /// The names of the joints it moves, in the order of their positions.

@@ -1,8 +1,8 @@
-use super::field::{ArmRuntime, SynchronousField};
+use super::field::SynchronousField;
+use super::shared::{self, SharedArms};
 use super::{Arm, Planner, PlannerError};
 use crate::formula::{Formula, FormulaTable};
 use crate::integrate::{Multistep, Starter};
-use crate::robot::LimitViolation;
 use num_traits::ToPrimitive;
 use std::collections::HashSet;
 
@@ -34,7 +34,8 @@ pub enum Start {
     Rk4,
     /// Runge-Kutta of order 8.
     Rk8,
-    /// The joint positions `x_1 .. x_{s-1}` of all arms one after the other, oldest state first.
+    /// The joint positions `x_1 .. x_{s-1}` of all arms one after the other, oldest state first. Arms that share joints
+    /// stand at the place of the first of them: its joints, then those of the next that are not there yet.
     Given(Vec<Vec<f64>>),
 }
 
@@ -166,14 +167,10 @@ impl PlannerBuilder {
         warn_about_start(formula, &starter, steps, &mut warnings);
         warnings.extend(self.arms.iter().filter_map(too_few_joints));
 
-        let x0: Vec<f64> = self.arms.iter().flat_map(|arm| arm.q0.iter().copied()).collect();
-        let mut field = SynchronousField {
-            gain: h / (sigma * gamma_sum),
-            dimension: x0.len(),
-            arms: self.arms.into_iter().map(ArmRuntime::new).collect(),
-        };
+        let mut field = SynchronousField::new(self.arms, h / (sigma * gamma_sum));
         check_criteria(formula, &field, sigma)?;
-        let mut stepper = Multistep::new(formula, &starter, &field, 0.0, sigma, &x0)?;
+        warnings.extend(field.shared.iter().filter_map(|shared| too_few_shared(shared, &field)));
+        let mut stepper = Multistep::new(formula, &starter, &field, 0.0, sigma, &field.initial())?;
         stepper.evaluate(&mut field);
         check_path_starts(&field)?;
         let description = super::run::Description {
@@ -199,7 +196,7 @@ impl PlannerBuilder {
             }
             check_initial(arm)?;
         }
-        Ok(())
+        shared::sets(&self.arms).iter().try_for_each(|set| shared::check(&self.arms, set))
     }
 
     /// The gap and the number of steps: `sigma` as asked where it divides the duration, else `T / N` just below it.
@@ -281,26 +278,11 @@ fn check_feedback(what: &'static str, value: f64) -> Result<(), PlannerError> {
 
 fn check_initial(arm: &Arm) -> Result<(), PlannerError> {
     let name = || arm.name.clone();
-    let joints = arm.chain.joints();
-    if joints.is_empty() {
+    if arm.chain.dof() == 0 {
         let (base, tip) = (arm.chain.base().to_owned(), arm.chain.tip().to_owned());
         return Err(PlannerError::NoJoints { arm: name(), base, tip });
     }
-    if arm.q0.len() != joints.len() {
-        let joints = arm.joint_names().join(", ");
-        let (got, expected) = (arm.q0.len(), arm.chain.dof());
-        return Err(PlannerError::InitialLength { arm: name(), got, expected, joints });
-    }
-    for (joint, &value) in joints.iter().zip(&arm.q0) {
-        if !value.is_finite() {
-            return Err(PlannerError::InitialNonFinite { arm: name(), joint: joint.name.clone(), value });
-        }
-    }
-    if let Some(violation) = arm.chain.limit_violations(&arm.q0).next() {
-        let LimitViolation { joint, value, lower, upper, .. } = violation;
-        return Err(PlannerError::InitialOutsideLimits { arm: name(), joint, value, lower, upper });
-    }
-    Ok(())
+    arm.chain.check_within_limits(&arm.q0).map_err(|problem| PlannerError::Initial { arm: name(), problem })
 }
 
 fn warn_about_start(formula: &Formula, starter: &Starter<f64>, steps: usize, warnings: &mut Vec<String>) {
@@ -328,6 +310,14 @@ fn too_few_joints(arm: &Arm) -> Option<String> {
     (joints < rows).then(|| {
         let (name, task) = (&arm.name, arm.task.name());
         format!("arm `{name}` has {joints} joints for the {rows} components of a `{task}` task: most paths are out of its reach")
+    })
+}
+
+fn too_few_shared(shared: &SharedArms, field: &SynchronousField) -> Option<String> {
+    let (joints, rows) = shared.size();
+    (joints < rows).then(|| {
+        let arms = shared.report(&field.arms).arms.join("`, `");
+        format!("the arms `{arms}` together have {joints} joints for the {rows} components of their tasks: most paths are out of their reach")
     })
 }
 

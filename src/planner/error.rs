@@ -1,4 +1,5 @@
 use crate::integrate::IntegrateError;
+use crate::robot::PositionsError;
 use thiserror::Error;
 
 /// Why a planner could not be made. The text is a sentence that names the remedy.
@@ -82,41 +83,13 @@ pub enum PlannerError {
         /// The limit [1/s].
         limit: f64,
     },
-    /// The initial joint positions do not fit the chain.
-    #[error("arm `{arm}`: q0 has {got} entries, expected {expected} ({joints})")]
-    InitialLength {
+    /// The initial joint positions do not fit the chain, or lie outside its limits.
+    #[error("arm `{arm}`: q0: {problem}")]
+    Initial {
         /// The arm.
         arm: String,
-        /// Entries given.
-        got: usize,
-        /// Entries needed.
-        expected: usize,
-        /// The joints' names, in order.
-        joints: String,
-    },
-    /// An initial joint position is infinite or NaN.
-    #[error("arm `{arm}`: q0 of joint `{joint}` is {value}, which is not a finite number")]
-    InitialNonFinite {
-        /// The arm.
-        arm: String,
-        /// The joint.
-        joint: String,
-        /// What was given.
-        value: f64,
-    },
-    /// An initial joint position lies outside the joint's limits.
-    #[error("arm `{arm}`: q0 of joint `{joint}` is {value}, outside its limits [{lower}, {upper}]")]
-    InitialOutsideLimits {
-        /// The arm.
-        arm: String,
-        /// The joint.
-        joint: String,
-        /// What was given [rad or m].
-        value: f64,
-        /// Lower limit [rad or m].
-        lower: f64,
-        /// Upper limit [rad or m].
-        upper: f64,
+        /// What does not fit.
+        problem: PositionsError,
     },
     /// The path does not begin where the tip is.
     #[error(
@@ -127,6 +100,31 @@ pub enum PlannerError {
         arm: String,
         /// Norm of the task error at the start [m or rad].
         distance: f64,
+    },
+    /// Two arms move a joint in common, and start it at different positions.
+    #[error(
+        "arms `{arm}` and `{other}` share joint `{joint}`, which starts at {} in the one and at {} in the other; give it one position",
+        crate::math::figure(*.value), crate::math::figure(*.other_value)
+    )]
+    SharedStart {
+        /// The joint.
+        joint: String,
+        /// The arm named first.
+        arm: String,
+        /// Where the joint starts there [rad or m].
+        value: f64,
+        /// The other arm.
+        other: String,
+        /// Where the joint starts there [rad or m].
+        other_value: f64,
+    },
+    /// An arm that shares joints has a law that can not be resolved together with others.
+    #[error(
+        "arm `{arm}` shares joints with another arm, and its law is not the plain least-norm law, the only one that resolves several arms together"
+    )]
+    SharedLaw {
+        /// The arm.
+        arm: String,
     },
     /// The chain has no movable joint.
     #[error("arm `{arm}`: nothing moves between `{base}` and `{tip}`")]

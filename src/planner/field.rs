@@ -1,4 +1,5 @@
 use super::Arm;
+use super::shared::{self, SharedArms};
 use crate::integrate::{Field, Parts};
 use crate::law::{Demand, Resolution};
 use crate::robot::ChainScratch;
@@ -8,9 +9,13 @@ use nalgebra::Vector6;
 pub(super) struct ArmRuntime {
     pub(super) arm: Arm,
     scratch: ChainScratch,
-    columns: Vec<Vector6<f64>>,
+    pub(super) columns: Vec<Vector6<f64>>,
     pub(super) error: Vector6<f64>,
     pub(super) resolution: Resolution,
+    /// Whether it shares joints with other arms.
+    pub(super) is_shared: bool,
+    /// Whether there are fewer joints than task components, its own or those of all arms that it shares joints with.
+    pub(super) has_too_few_joints: bool,
 }
 
 impl ArmRuntime {
@@ -23,24 +28,32 @@ impl ArmRuntime {
             columns: vec![Vector6::zeros(); joints],
             error: Vector6::zeros(),
             resolution: Resolution { smallest_singular_value: f64::INFINITY, damped: false },
+            is_shared: false,
+            has_too_few_joints: joints < arm.task.rows(),
             arm,
         }
     }
 
     /// Forward kinematics, task error and both parts of the joint velocity at time `t`.
     fn evaluate(&mut self, t: f64, gain: f64, q: &[f64], f: &mut [f64], g: &mut [f64]) {
-        let posed = self.arm.chain.forward(q, &mut self.scratch);
-        posed.geometric_jacobian(&mut self.columns);
-        let reference = self.arm.motion.at(t);
-        self.error = self.arm.task.error(&posed.pose(), &reference);
+        let twist = self.look(t, q);
         let demand = Demand {
             rows: self.arm.task.rows(),
             jacobian: &self.columns,
             q,
-            feedforward: &reference.twist,
+            feedforward: &twist,
             feedback: &(self.error * -gain),
         };
         self.resolution = self.arm.law.resolve(&demand, f, g);
+    }
+
+    /// Forward kinematics, Jacobian and task error at time `t`; returns the twist of the reference.
+    pub(super) fn look(&mut self, t: f64, q: &[f64]) -> Vector6<f64> {
+        let posed = self.arm.chain.forward(q, &mut self.scratch);
+        posed.geometric_jacobian(&mut self.columns);
+        let reference = self.arm.motion.at(t);
+        self.error = self.arm.task.error(&posed.pose(), &reference);
+        reference.twist
     }
 }
 
@@ -49,6 +62,82 @@ pub(super) struct SynchronousField {
     pub(super) arms: Vec<ArmRuntime>,
     pub(super) gain: f64,
     pub(super) dimension: usize,
+    /// Where the joints of each arm are found.
+    places: Vec<Place>,
+    pub(super) shared: Vec<SharedArms>,
+}
+
+/// Where the joints of an arm stand.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    /// In the state, from here on.
+    From(usize),
+    /// With a member of a set of arms that share joints.
+    Shared { set: usize, member: usize },
+}
+
+impl SynchronousField {
+    pub(super) fn new(arms: Vec<Arm>, gain: f64) -> Self {
+        let sets = shared::sets(&arms);
+        let arms: Vec<_> = arms.into_iter().map(ArmRuntime::new).collect();
+        let places = vec![Place::From(0); arms.len()];
+        let mut field = Self { arms, gain, dimension: 0, places, shared: Vec::new() };
+        for arm in 0..field.arms.len() {
+            match sets.iter().find(|set| set.contains(&arm)) {
+                Some(set) if set[0] == arm => field.add_shared(set),
+                Some(_) => {}
+                None => {
+                    field.places[arm] = Place::From(field.dimension);
+                    field.dimension += field.arms[arm].arm.chain.dof();
+                }
+            }
+        }
+        field
+    }
+
+    fn add_shared(&mut self, arms: &[usize]) {
+        let shared = SharedArms::new(&self.arms, arms, self.dimension);
+        self.dimension = shared.range().end;
+        for (member, &arm) in arms.iter().enumerate() {
+            self.places[arm] = Place::Shared { set: self.shared.len(), member };
+            self.arms[arm].is_shared = true;
+            self.arms[arm].has_too_few_joints |= shared.has_too_few_joints();
+        }
+        self.shared.push(shared);
+    }
+
+    /// The joint positions of all arms at the start, as a state.
+    pub(super) fn initial(&self) -> Vec<f64> {
+        let mut x = vec![0.0; self.dimension];
+        for (runtime, place) in self.arms.iter().zip(&self.places) {
+            if let Place::From(from) = *place {
+                x[from..from + runtime.arm.q0.len()].copy_from_slice(&runtime.arm.q0);
+            }
+        }
+        for shared in &self.shared {
+            x[shared.range()].copy_from_slice(&shared.initial(&self.arms));
+        }
+        x
+    }
+
+    /// The positions and velocities of an arm's own joints in a state and its derivative, which were evaluated last.
+    pub(super) fn joints_of<'a>(
+        &'a self,
+        arm: usize,
+        state: &'a [f64],
+        derivative: &'a [f64],
+    ) -> [&'a [f64]; 2] {
+        match self.places[arm] {
+            Place::From(from) => {
+                let range = from..from + self.arms[arm].arm.chain.dof();
+                [&state[range.clone()], &derivative[range]]
+            }
+            Place::Shared { set, member } => {
+                let member = &self.shared[set].members()[member];
+                [&member.positions, &member.velocities]
+            }
+        }
+    }
 }
 
 impl Field<f64> for SynchronousField {
@@ -61,11 +150,14 @@ impl Field<f64> for SynchronousField {
     }
 
     fn evaluate(&mut self, t: f64, x: &[f64], f: &mut [f64], g: &mut [f64]) {
-        let mut from = 0;
-        for runtime in &mut self.arms {
-            let to = from + runtime.arm.chain.dof();
-            runtime.evaluate(t, self.gain, &x[from..to], &mut f[from..to], &mut g[from..to]);
-            from = to;
+        for (runtime, place) in self.arms.iter_mut().zip(&self.places) {
+            if let Place::From(from) = *place {
+                let range = from..from + runtime.arm.chain.dof();
+                runtime.evaluate(t, self.gain, &x[range.clone()], &mut f[range.clone()], &mut g[range]);
+            }
+        }
+        for shared in &mut self.shared {
+            shared.evaluate(&mut self.arms, (t, self.gain), x, [&mut *f, &mut *g]);
         }
     }
 }

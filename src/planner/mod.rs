@@ -8,10 +8,11 @@ mod field;
 mod monitor;
 mod plan;
 mod run;
+mod shared;
 
 pub use arm::Arm;
 pub use builder::{Feedback, PlannerBuilder, Start};
 pub use error::PlannerError;
 pub use monitor::{LimitKind, Violation};
-pub use plan::{ArmPlan, Plan, PlanStatus};
+pub use plan::{ArmPlan, Plan, PlanStatus, SharedJoints};
 pub use run::{ArmState, Planner, Stop};

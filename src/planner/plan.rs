@@ -61,6 +61,8 @@ pub struct ArmPlan {
     pub damped_samples: usize,
     /// Joint limits crossed, each where it was worst.
     pub violations: Vec<Violation>,
+    /// Where the initial joint positions were solved for: the distance [m, rad] of the tip from where it was asked to be.
+    pub start_distance: Option<f64>,
 }
 
 impl ArmPlan {
@@ -75,6 +77,15 @@ impl ArmPlan {
         let joints = self.joints.len();
         &self.velocities[n * joints..(n + 1) * joints]
     }
+}
+
+/// Arms that move joints in common.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SharedJoints {
+    /// Their names.
+    pub arms: Vec<String>,
+    /// The joints that move two of them or more.
+    pub joints: Vec<String>,
 }
 
 /// The outcome of a run: joint trajectories of all arms on one time grid, whether it ended well, and what it met.
@@ -96,6 +107,8 @@ pub struct Plan {
     pub steps: usize,
     /// What each arm did.
     pub arms: Vec<ArmPlan>,
+    /// Which arms shared joints, and were resolved as one system.
+    pub shared: Vec<SharedJoints>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }

@@ -153,11 +153,11 @@ impl Planner {
     /// # Panics
     /// If there is no arm `i`.
     pub fn arm(&self, i: usize) -> ArmState<'_> {
-        let from: usize = self.field.arms[..i].iter().map(|runtime| runtime.arm.chain.dof()).sum();
-        let range = from..from + self.field.arms[i].arm.chain.dof();
+        let [positions, velocities] =
+            self.field.joints_of(i, self.stepper.state(), self.stepper.derivative());
         ArmState {
-            positions: &self.stepper.state()[range.clone()],
-            velocities: &self.stepper.derivative()[range],
+            positions,
+            velocities,
             error: &self.field.arms[i].error,
             damped: self.field.arms[i].resolution.damped,
         }
@@ -231,20 +231,19 @@ impl Planner {
             None => (PlanStatus::Completed, None),
         };
         let Description { formula, sigma, h, start, steps, .. } = self.description;
-        Plan { status, reason, formula, sigma, h, start, steps, arms, warnings }
+        let shared = self.field.shared.iter().map(|shared| shared.report(&self.field.arms)).collect();
+        Plan { status, reason, formula, sigma, h, start, steps, arms, shared, warnings }
     }
 
     /// Observes the present sample: errors, limits, conditioning.
     fn watch(&mut self) {
         let (t, sigma) = (self.stepper.time(), self.description.sigma);
-        let mut from = 0;
-        for (runtime, monitor) in self.field.arms.iter().zip(&mut self.monitors) {
-            let to = from + runtime.arm.chain.dof();
-            let (q, velocity) = (&self.stepper.state()[from..to], &self.stepper.derivative()[from..to]);
+        let (state, derivative) = (self.stepper.state(), self.stepper.derivative());
+        for (i, (runtime, monitor)) in self.field.arms.iter().zip(&mut self.monitors).enumerate() {
+            let [q, velocity] = self.field.joints_of(i, state, derivative);
             monitor.observe_error(&runtime.error);
             monitor.observe_joints(&runtime.arm.chain, t, sigma, q, velocity);
             monitor.observe_conditioning(&runtime.resolution, t);
-            from = to;
         }
     }
 
@@ -255,10 +254,14 @@ impl Planner {
         }
         if let Some(i) = self.was_singular.iter().position(|&singular| singular) {
             let runtime = &self.field.arms[i];
+            let of = if runtime.is_shared {
+                "the stacked task Jacobian of all arms that share its joints".to_owned()
+            } else {
+                format!("its {}-row task Jacobian", runtime.arm.task.rows())
+            };
             let reason = format!(
-                "arm `{}` starts in a singular configuration: the smallest singular value of its {}-row task Jacobian at q0 is {:.3e}, below the threshold {:.3e}; choose another q0 (a bent arm) or a task with fewer components",
+                "arm `{}` starts in a singular configuration: the smallest singular value of {of} at q0 is {:.3e}, below the threshold {:.3e}; choose another q0 (a bent arm) or a task with fewer components",
                 runtime.arm.name,
-                runtime.arm.task.rows(),
                 runtime.resolution.smallest_singular_value,
                 runtime.arm.law.threshold()
             );
@@ -319,8 +322,7 @@ fn is_within(runtime: &ArmRuntime, fraction: f64) -> bool {
     let orientation = runtime.error.fixed_rows::<3>(3).norm();
     let reach = runtime.arm.chain.reach();
     let bound = LOST_FRACTION_OF_REACH * if reach.is_finite() { reach } else { 1.0 };
-    let too_few = runtime.arm.chain.dof() < runtime.arm.task.rows();
-    let fraction = if too_few { WITH_TOO_FEW_JOINTS * fraction } else { fraction };
+    let fraction = if runtime.has_too_few_joints { WITH_TOO_FEW_JOINTS * fraction } else { fraction };
     position <= fraction * bound && orientation <= fraction * LOST_ORIENTATION
 }
 
@@ -334,8 +336,14 @@ fn diverged(runtime: &ArmRuntime, t: f64, remedy: &str) -> Stop {
 }
 
 fn singular(runtime: &ArmRuntime, t: f64, reference: &Reference) -> Stop {
+    // What a set of arms can reach at once is not known from what each of them can.
+    let (of, reached) = if runtime.is_shared {
+        ("the Jacobian of all arms that share its joints", "by this arm if it were alone")
+    } else {
+        ("its Jacobian", "from another q0 for instance")
+    };
     let reason = format!(
-        "arm `{}` met a singularity and lost its path at t = {t:.6} s with a task error of {:.3e}: the smallest singular value of its Jacobian is {:.3e}, with a threshold of {:.3e}; the path's point {} can be reached, from another q0 for instance",
+        "arm `{}` met a singularity and lost its path at t = {t:.6} s with a task error of {:.3e}: the smallest singular value of {of} is {:.3e}, with a threshold of {:.3e}; the path's point {} can be reached, {reached}",
         runtime.arm.name,
         runtime.error.norm(),
         runtime.resolution.smallest_singular_value,
@@ -392,5 +400,6 @@ fn empty_plan(runtime: &ArmRuntime, steps: usize) -> ArmPlan {
         smallest_singular_value: (f64::INFINITY, 0.0),
         damped_samples: 0,
         violations: Vec::new(),
+        start_distance: runtime.arm.start_distance,
     }
 }

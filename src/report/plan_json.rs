@@ -29,7 +29,15 @@ struct Document<'a> {
     steps: usize,
     samples: usize,
     arms: Vec<Arm<'a>>,
+    shared: Vec<Shared<'a>>,
     warnings: &'a [String],
+}
+
+/// Arms that were resolved as one system because they move joints in common.
+#[derive(Serialize)]
+struct Shared<'a> {
+    arms: &'a [String],
+    joints: &'a [String],
 }
 
 #[derive(Serialize)]
@@ -44,6 +52,14 @@ struct Arm<'a> {
     smallest_singular_value: f64,
     damped_samples: usize,
     limits: Limits<'a>,
+    start_pose: Option<StartPose<'a>>,
+}
+
+/// The initial joint positions, where they were solved for, and how far they leave the tip from where it was asked to be.
+#[derive(Serialize)]
+struct StartPose<'a> {
+    q0: &'a [f64],
+    distance: f64,
 }
 
 #[derive(Serialize)]
@@ -73,6 +89,7 @@ impl<'a> Document<'a> {
             steps: plan.steps,
             samples: plan.samples(),
             arms: plan.arms.iter().map(Arm::of).collect(),
+            shared: plan.shared.iter().map(|s| Shared { arms: &s.arms, joints: &s.joints }).collect(),
             warnings: &plan.warnings,
         }
     }
@@ -98,6 +115,7 @@ impl<'a> Arm<'a> {
             smallest_singular_value: arm.smallest_singular_value.0,
             damped_samples: arm.damped_samples,
             limits: Limits { ok: arm.violations.is_empty(), violations: violations.collect() },
+            start_pose: arm.start_distance.map(|distance| StartPose { q0: arm.position(0), distance }),
         }
     }
 }

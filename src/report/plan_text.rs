@@ -26,11 +26,16 @@ impl PlanFormat for PlanText {
             figure(plan.sigma)
         )?;
         writeln!(out, "formula {}, h = {}, start {}", plan.formula, short(plan.h), plan.start)?;
+        for shared in &plan.shared {
+            let (arms, joints) = (shared.arms.join(" and "), shared.joints.join(", "));
+            writeln!(out, "{arms} share {joints}: solved as one system")?;
+        }
         match &plan.reason {
             None => writeln!(out, "{}\n", plan.status.name())?,
             Some(reason) => writeln!(out, "stopped, {}: {reason}\n", plan.status.name())?,
         }
         write!(out, "{}", errors(plan))?;
+        plan.arms.iter().try_for_each(|arm| start(arm, out))?;
         writeln!(out, "\ntask error over time, logarithmic:")?;
         let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
         for arm in &plan.arms {
@@ -42,6 +47,13 @@ impl PlanFormat for PlanText {
         }
         plan.warnings.iter().try_for_each(|warning| writeln!(out, "\nwarning: {warning}"))
     }
+}
+
+/// Where an arm begins, if that was solved for.
+fn start(arm: &ArmPlan, out: &mut dyn Write) -> io::Result<()> {
+    let Some(distance) = arm.start_distance else { return Ok(()) };
+    let q0 = arm.position(0).iter().map(|q| format!("{q:.4}")).collect::<Vec<_>>().join(", ");
+    writeln!(out, "\n{} starts at q0 = [{q0}], found for its start_pose to {distance:.1e}", arm.name)
 }
 
 fn errors(plan: &Plan) -> Table {

@@ -6,15 +6,15 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Unit, Vector3};
 
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
-use super::model::{ArmSpec, LawKind, Mount, Scenario, Start, TaskKind};
-use super::path_spec::{PathKind, PathSpec, Plane, TimeLawKind};
+use super::model::{ArmSpec, LawKind, Mount, Scenario, Start};
+use super::path_spec::{PathKind, PathSpec, TimeLawKind};
 use super::real::Real;
 use super::robots::RobotSource;
+use super::start_pose::StartPose;
 use crate::formula::{Duty, Formula, FormulaTable};
 use crate::law::Pseudoinverse;
-use crate::math::figure;
 use crate::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
-use crate::robot::{Chain, ChainError, UrdfOptions};
+use crate::robot::{Chain, ChainError, ChainJoint, PositionsError, UrdfOptions};
 use crate::task::{self, Motion, Planar, PlanarCurve, TimeLaw, Turning};
 
 impl Scenario {
@@ -26,11 +26,15 @@ impl Scenario {
     /// gives it a place.
     pub fn planner(&self, table: &FormulaTable, folder: Option<&Path>) -> Result<Planner, ScenarioError> {
         self.check()?;
-        let formula = self.formula_of(table)?;
-        let arms: Vec<Arm> =
-            self.arm.iter().map(|arm| self.build_arm(arm, folder)).collect::<Result<_, _>>()?;
-        self.check_shared_joints(&arms)?;
-        self.builder(formula).arms(arms).build().map_err(|e| self.refused(&e))
+        let formula = self.formula_of(table);
+        let arms = self.build_arms(folder);
+        let refusals = arms.iter().filter_map(|arm| arm.as_ref().err());
+        if let Some(all) = ScenarioError::all(formula.as_ref().err().into_iter().chain(refusals)) {
+            return Err(all);
+        }
+        let arms: Vec<Arm> = arms.into_iter().collect::<Result<_, _>>()?;
+        let arms = self.on_machines(arms)?;
+        self.builder(formula?).arms(arms).build().map_err(|e| self.refused(&e))
     }
 
     /// Returns the row that the scenario names, or the best general one, if it may be run.
@@ -63,42 +67,85 @@ impl Scenario {
         }
     }
 
-    fn build_arm(&self, spec: &ArmSpec, folder: Option<&Path>) -> Result<Arm, ScenarioError> {
+    /// Returns the arms in their order. Those with a `start_pose` are built last: where they share joints with others,
+    /// these are where the others have them.
+    fn build_arms(&self, folder: Option<&Path>) -> Vec<Result<Arm, ScenarioError>> {
+        let mut built: Vec<(usize, Result<Arm, ScenarioError>)> = Vec::new();
+        let mut order: Vec<usize> = (0..self.arm.len()).collect();
+        order.sort_by_key(|&i| self.arm[i].start_pose.is_some());
+        for i in order {
+            let spec = &self.arm[i];
+            let on_machine = built.iter().filter(|(j, _)| self.arm[*j].is_same_machine(spec));
+            let machine: Vec<&Arm> = on_machine.filter_map(|(_, arm)| arm.as_ref().ok()).collect();
+            let arm = self.build_arm(spec, folder, &machine);
+            built.push((i, arm));
+        }
+        built.sort_by_key(|(i, _)| *i);
+        built.into_iter().map(|(_, arm)| arm).collect()
+    }
+
+    fn build_arm(
+        &self,
+        spec: &ArmSpec,
+        folder: Option<&Path>,
+        machine: &[&Arm],
+    ) -> Result<Arm, ScenarioError> {
         let at = KeyPath::dotted("arm").key(&spec.name);
         let chain = chain(&at, spec, folder)?.mounted(&spec.mount.pose());
-        let q0: Vec<f64> = spec.q0.iter().map(Real::value).collect();
-        check_initial(&at, &chain, &q0)?;
+        let given: Vec<f64> = spec.q0.iter().map(Real::value).collect();
+        if !given.is_empty() || spec.start_pose.is_none() {
+            chain.check_within_limits(&given).map_err(|problem| refused_positions(&at, &problem))?;
+        }
+        let held = positions_in_common(&chain, machine);
+        let solve = |start: &StartPose| start.solve(&at, spec, (&chain, &held), self.duration.value());
+        let found = spec.start_pose.as_ref().map(solve);
+        let (q0, distance) = match found.transpose()? {
+            Some(solution) => (solution.q.clone(), Some(solution.distance())),
+            None => (given, None),
+        };
         let start = chain.forward(&q0, &mut chain.scratch()).pose();
         let motion = spec.path.motion(&start, self.duration.value());
-        let arm = Arm::new(spec.name.clone(), chain, q0, spec.task.planned(), motion);
+        let mut arm = Arm::new(spec.name.clone(), chain, q0, spec.task, motion);
+        if let Some(distance) = distance {
+            arm = arm.with_start_distance(distance);
+        }
         Ok(match (self.law.kind, &self.law.threshold) {
             (LawKind::Pseudoinverse, None) => arm,
             (LawKind::Pseudoinverse, Some(t)) => arm.with_law(Pseudoinverse::new().with_threshold(t.value())),
         })
     }
 
-    /// Refuses two arms that would move one joint of one robot in two ways.
+    /// Puts arms that are parts of one machine onto it: arms of the same robot with their bases at the same place. At
+    /// different places they are two of a kind.
     ///
-    /// Arms of the same robot at the same place are one machine; at different mounts they are two of a kind.
-    fn check_shared_joints(&self, arms: &[Arm]) -> Result<(), ScenarioError> {
-        for (i, (spec, arm)) in self.arm.iter().zip(arms).enumerate() {
-            for (other_spec, other) in self.arm.iter().zip(arms).take(i) {
-                let same_machine = spec.robot == other_spec.robot && spec.mount == other_spec.mount;
-                let shared = arm.chain().joints().iter().map(|joint| &joint.name);
-                let mut shared =
-                    shared.filter(|name| other.chain().joints().iter().any(|j| &&j.name == name));
-                if let Some(joint) = shared.next().filter(|_| same_machine) {
+    /// # Errors
+    /// Two arms with a joint in common of which it can not be said whether they are one machine, since their bases are
+    /// different links of it, or the robot is not calibrated and locked alike.
+    fn on_machines(&self, arms: Vec<Arm>) -> Result<Vec<Arm>, ScenarioError> {
+        for (i, (spec, arm)) in self.arm.iter().zip(&arms).enumerate() {
+            for (other_spec, other) in self.arm.iter().zip(&arms).take(i) {
+                let is_unclear = (&spec.robot, &spec.mount) == (&other_spec.robot, &other_spec.mount)
+                    && !spec.is_same_machine(other_spec);
+                let common = arm.chain().joints().iter().map(|joint| &joint.name);
+                let mut common =
+                    common.filter(|name| other.chain().joints().iter().any(|j| &&j.name == name));
+                if let Some(joint) = common.next().filter(|_| is_unclear) {
+                    let key = if spec.base == other_spec.base { "robot" } else { "base" };
+                    let differs = if key == "base" { "`base`" } else { "`calibration` and `lock`" };
                     let text = format!(
-                        "arms `{}` and `{}` both move joint `{joint}` of one robot, each in its own way; give them a \
-                         `base` beyond that joint, or different mounts if there are two such robots",
+                        "arms `{}` and `{}` both move joint `{joint}` of one robot; give them the same {differs} to share the \
+                         joint, or different mounts if there are two such robots",
                         other_spec.name, spec.name
                     );
-                    let at = KeyPath::dotted("arm").key(&spec.name).key("base");
+                    let at = KeyPath::dotted("arm").key(&spec.name).key(key);
                     return Err(ScenarioError::at(ErrorKind::Scenario, &at, text));
                 }
             }
         }
-        Ok(())
+        // A machine is called after the first of its arms.
+        let machine = |own: &ArmSpec| self.arm.iter().find(|other| other.is_same_machine(own));
+        let placed = arms.into_iter().zip(self.arm.iter().map(machine));
+        Ok(placed.map(|(arm, first)| arm.on_machine(first.map_or("", |first| first.name.as_str()))).collect())
     }
 
     /// Returns the planner's refusal with the key that it is about.
@@ -113,10 +160,22 @@ impl Scenario {
             PlannerError::Feedback { .. } | PlannerError::StepSizeOutsideRange { .. } => {
                 (ErrorKind::Scenario, KeyPath::dotted(feedback))
             }
-            PlannerError::InitialLength { arm, .. }
-            | PlannerError::InitialNonFinite { arm, .. }
-            | PlannerError::InitialOutsideLimits { arm, .. } => (ErrorKind::Scenario, of_arm(arm, "q0")),
-            PlannerError::PathStart { arm, .. } => (ErrorKind::Scenario, of_arm(arm, "path").key("center")),
+            PlannerError::Initial { arm, problem } => {
+                return refused_positions(&KeyPath::dotted("arm").key(arm), problem);
+            }
+            PlannerError::PathStart { arm, .. } => {
+                let remedy = "; `start_pose = \"path\"` has q0 solved for";
+                let at = of_arm(arm, "path").key("center");
+                return ScenarioError::at(ErrorKind::Scenario, &at, format!("{error}{remedy}"));
+            }
+            PlannerError::SharedStart { other, .. } => {
+                let remedy = ", or the arms different mounts if there are two such robots";
+                return ScenarioError::at(
+                    ErrorKind::Scenario,
+                    &of_arm(other, "q0"),
+                    format!("{error}{remedy}"),
+                );
+            }
             PlannerError::NoJoints { arm, .. } => (ErrorKind::Robot, of_arm(arm, "tip")),
             PlannerError::Integrate(_) => (ErrorKind::Formula, KeyPath::dotted("formula")),
             _ => (ErrorKind::Scenario, KeyPath::default()),
@@ -126,6 +185,21 @@ impl Scenario {
         }
         ScenarioError::at(kind, &path, error)
     }
+}
+
+/// The joints of a chain, by their places in it, that other arms move too, and where these have them.
+fn positions_in_common(chain: &Chain, arms: &[&Arm]) -> Vec<(usize, f64)> {
+    let common = |(place, joint): (usize, &ChainJoint)| {
+        let of = |arm: &&Arm| arm.start_of(&joint.name);
+        arms.iter().find_map(of).map(|position| (place, position))
+    };
+    chain.joints().iter().enumerate().filter_map(common).collect()
+}
+
+fn refused_positions(at: &KeyPath, problem: &PositionsError) -> ScenarioError {
+    let at = at.key("q0");
+    let at = problem.index().map_or(at.clone(), |index| at.index(index));
+    ScenarioError::at(ErrorKind::Scenario, &at, problem)
 }
 
 fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
@@ -151,27 +225,6 @@ fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, S
     Ok(chain)
 }
 
-/// The number of joints and their limits, checked where kinematics needs them first.
-fn check_initial(at: &KeyPath, chain: &Chain, q0: &[f64]) -> Result<(), ScenarioError> {
-    let at = at.key("q0");
-    if q0.len() != chain.dof() {
-        let names: Vec<&str> = chain.joints().iter().map(|joint| joint.name.as_str()).collect();
-        let problem = format!("expected {} positions ({}), got {}", chain.dof(), names.join(", "), q0.len());
-        return Err(ScenarioError::at(ErrorKind::Scenario, &at, problem));
-    }
-    if let Some(outside) = chain.limit_violations(q0).next() {
-        let problem = format!(
-            "joint `{}` would start at {}, outside its limits [{}, {}]",
-            outside.joint,
-            figure(outside.value),
-            figure(outside.lower),
-            figure(outside.upper)
-        );
-        return Err(ScenarioError::at(ErrorKind::Scenario, &at.index(outside.index), problem));
-    }
-    Ok(())
-}
-
 impl Start {
     fn planned(self) -> planner::Start {
         match self {
@@ -179,29 +232,6 @@ impl Start {
             Self::Ramp => planner::Start::Ramp,
             Self::Rk4 => planner::Start::Rk4,
             Self::Rk8 => planner::Start::Rk8,
-        }
-    }
-}
-
-impl TaskKind {
-    fn planned(self) -> task::TaskKind {
-        match self {
-            Self::PositionXy => task::TaskKind::PositionXy,
-            Self::Position => task::TaskKind::Position,
-            Self::Pose => task::TaskKind::Pose,
-        }
-    }
-}
-
-impl Plane {
-    fn planned(self) -> task::Plane {
-        match self {
-            Self::Xy => task::Plane::Xy,
-            Self::Yz => task::Plane::Yz,
-            Self::Zx => task::Plane::Zx,
-            Self::Yx => task::Plane::Yx,
-            Self::Zy => task::Plane::Zy,
-            Self::Xz => task::Plane::Xz,
         }
     }
 }
@@ -226,8 +256,16 @@ impl Mount {
     }
 }
 
+impl ArmSpec {
+    /// Whether two arms are parts of one machine: of the same robot, with their bases at the same place.
+    fn is_same_machine(&self, other: &Self) -> bool {
+(&self.robot, &self.base, &self.mount) == (&other.robot, &other.base, &other.mount)
+            && (&self.calibration, &self.lock) == (&other.calibration, &other.lock)
+    }
+}
+
 /// Two numbers are x and y.
-fn vector(numbers: &[Real]) -> Vector3<f64> {
+pub(super) fn vector(numbers: &[Real]) -> Vector3<f64> {
     let number = |axis: usize| numbers.get(axis).map_or(0.0, Real::value);
     Vector3::new(number(0), number(1), number(2))
 }
@@ -238,7 +276,7 @@ fn value_or(number: Option<&Real>, default: f64) -> f64 {
 
 impl PathSpec {
     /// Returns the motion along the path of a tip that stands at `start`.
-    fn motion(&self, start: &IsometryMatrix3<f64>, duration: f64) -> Motion {
+    pub(super) fn motion(&self, start: &IsometryMatrix3<f64>, duration: f64) -> Motion {
         let time_law = self.time_law.unwrap_or(TimeLawKind::Sin2).planned();
         let path = self.path(start);
         match &self.center {
@@ -258,7 +296,7 @@ impl PathSpec {
             PathKind::Line => Box::new(task::Line { displacement: self.line_displacement(start) }),
             _ => Box::new(Planar::new(
                 self.curve(),
-                self.plane.unwrap_or(Plane::Xy).planned(),
+                self.plane.unwrap_or_default(),
                 value_or(self.rotation.as_ref(), 0.0),
                 value_or(self.from.as_ref(), 0.0),
                 value_or(self.sweep.as_ref(), std::f64::consts::TAU),

@@ -2,9 +2,11 @@
 
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
-use super::model::{ArmSpec, Scenario, TaskKind};
+use super::model::{ArmSpec, Scenario};
 use super::path_spec::{PathKind, PathSpec, TurnSpec};
 use super::real::Real;
+use super::start_pose::{self, StartPose};
+use crate::task::TaskKind;
 
 /// Largest length [m], angle [rad] or other number of an arm that is believed.
 const MAX_SIZE: f64 = 1e6;
@@ -25,21 +27,27 @@ impl Scenario {
     /// path has the parameters of its kind and no others.
     ///
     /// # Errors
-    /// [`ScenarioError`] for the first thing that does not hold.
+    /// [`ScenarioError`] for the first thing that does not hold, with all others beside it.
     pub fn check(&self) -> Result<(), ScenarioError> {
-        self.check_time()?;
-        self.check_law()?;
         let arms = KeyPath::dotted("arm");
-        require(!self.arm.is_empty(), &arms, || "a scenario needs at least one [[arm]]".to_owned())?;
+        let mut found = vec![self.check_time(), self.check_law()];
+        found.push(require(!self.arm.is_empty(), &arms, || {
+            "a scenario needs at least one [[arm]]".to_owned()
+        }));
         for (index, arm) in self.arm.iter().enumerate() {
-            check_name(&arms.index(index).key("name"), &arm.name)?;
+            let name = arms.index(index).key("name");
             let taken = self.arm[..index].iter().any(|other| other.name == arm.name);
-            require(!taken, &arms.index(index).key("name"), || {
+            found.push(check_name(&name, &arm.name));
+            found.push(require(!taken, &name, || {
                 format!("two arms are called \"{}\"; each needs a name of its own", arm.name)
-            })?;
-            check_arm(&arms.key(&arm.name), arm)?;
+            }));
+            found.extend(check_arm(&arms.key(&arm.name), arm));
         }
-        self.check_size()
+        // How many steps there are is worth a word only when they are numbers of seconds at all.
+        if found[0].is_ok() {
+            found.push(self.check_size());
+        }
+        ScenarioError::all(found.iter().filter_map(|found| found.as_ref().err())).map_or(Ok(()), Err)
     }
 
     fn check_time(&self) -> Result<(), ScenarioError> {
@@ -112,22 +120,40 @@ fn check_name(at: &KeyPath, name: &str) -> Result<(), ScenarioError> {
     })
 }
 
-fn check_arm(at: &KeyPath, arm: &ArmSpec) -> Result<(), ScenarioError> {
-    require(!arm.q0.is_empty(), &at.key("q0"), || "give one position per joint of the chain".to_owned())?;
-    for (value, joint) in arm.q0.iter().zip(0..) {
-        believable(&at.key("q0").index(joint), value)?;
-    }
+/// What is found in the parts of an arm, each by itself.
+fn check_arm(at: &KeyPath, arm: &ArmSpec) -> Vec<Result<(), ScenarioError>> {
+    let mut found = vec![require(!arm.q0.is_empty() || arm.start_pose.is_some(), &at.key("q0"), || {
+        "give one position per joint of the chain, or a `start_pose` that they are to be solved for"
+            .to_owned()
+    })];
+    found.extend(arm.q0.iter().zip(0..).map(|(value, joint)| believable(&at.key("q0").index(joint), value)));
     for (name, pose) in [("mount", &arm.mount), ("tool", &arm.tool)] {
         for (key, triple) in [("xyz", &pose.xyz), ("rpy", &pose.rpy)] {
-            for (value, axis) in triple.iter().zip(0..) {
-                believable(&at.key(name).key(key).index(axis), value)?;
-            }
+            let at = at.key(name).key(key);
+            found.extend(triple.iter().zip(0..).map(|(value, axis)| believable(&at.index(axis), value)));
         }
     }
     for (joint, held) in &arm.lock {
-        held.numbers().iter().try_for_each(|value| believable(&at.key("lock").key(joint), value))?;
+        let at = at.key("lock").key(joint);
+        found.extend(held.numbers().iter().map(|value| believable(&at, value)));
     }
-    check_path(&at.key("path"), &arm.path, arm.task)
+    found.extend(arm.start_pose.as_ref().map(|start| check_start(&at.key("start_pose"), arm, start)));
+    found.push(check_path(&at.key("path"), &arm.path, arm.task));
+    found
+}
+
+fn check_start(at: &KeyPath, arm: &ArmSpec, start: &StartPose) -> Result<(), ScenarioError> {
+    let (xyz, rpy) = start.parts();
+    if let Some(xyz) = xyz {
+        check_point(&at.key("xyz"), xyz, arm.task)?;
+        for (value, axis) in xyz.iter().zip(0..) {
+            believable(&at.key("xyz").index(axis), value)?;
+        }
+    }
+    for (value, axis) in rpy.into_iter().flatten().zip(0..) {
+        believable(&at.key("rpy").index(axis), value)?;
+    }
+    start_pose::objection(arm, start).map_or(Ok(()), |problem| Err(refuse(at, problem)))
 }
 
 /// The one rule for the size of lengths and angles: beyond it nothing of the arithmetic would be left.
@@ -169,13 +195,16 @@ fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), Scena
 /// Points have x, y and z; in the plane the z may be left out.
 fn check_points(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), ScenarioError> {
     for (name, value) in [("to", &path.to), ("displacement", &path.displacement), ("center", &path.center)] {
-        let Some(value) = value else { continue };
-        let planar = task == TaskKind::PositionXy;
-        require(value.len() == 3 || (planar && value.len() == 2), &at.key(name), || {
-            format!("expected {} numbers, got {}", if planar { "2 or 3" } else { "3" }, value.len())
-        })?;
+        value.as_ref().map_or(Ok(()), |value| check_point(&at.key(name), value, task))?;
     }
     Ok(())
+}
+
+fn check_point(at: &KeyPath, value: &[Real], task: TaskKind) -> Result<(), ScenarioError> {
+    let planar = task == TaskKind::PositionXy;
+    require(value.len() == 3 || (planar && value.len() == 2), at, || {
+        format!("expected {} numbers, got {}", if planar { "2 or 3" } else { "3" }, value.len())
+    })
 }
 
 fn check_turn(at: &KeyPath, turn: &TurnSpec, task: TaskKind) -> Result<(), ScenarioError> {

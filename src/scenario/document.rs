@@ -102,6 +102,7 @@ impl ScenarioText {
     /// Returns the error with the place of the key that it is about, or with the assignment that set it.
     #[must_use]
     pub fn placed(&self, mut error: ScenarioError) -> ScenarioError {
+        error.also = std::mem::take(&mut error.also).into_iter().map(|other| self.placed(other)).collect();
         if error.place.is_some() {
             return error;
         }

@@ -63,12 +63,14 @@ pub struct ScenarioError {
     pub place: Option<Box<Place>>,
     /// The file that the sentence is about as a whole, where it can not be read.
     pub file: Option<String>,
+    /// What else is wrong, where more than one thing was found.
+    pub also: Vec<ScenarioError>,
 }
 
 impl ScenarioError {
     /// Returns a refusal without a place.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
-        Self { kind, message: message.into(), path: None, place: None, file: None }
+        Self { kind, message: message.into(), path: None, place: None, file: None, also: Vec::new() }
     }
 
     /// Returns a refusal of the value at `path`; the sentence begins with the path.
@@ -79,6 +81,14 @@ impl ScenarioError {
     /// Returns the refusal of a file that can not be read.
     pub fn of_file(file: &std::path::Path, message: impl Into<String>) -> Self {
         Self { file: Some(file.display().to_string()), ..Self::new(ErrorKind::File, message) }
+    }
+
+    /// Returns several refusals as one: the first with the others beside it. Nothing where there are none.
+    pub fn all<'a>(refusals: impl IntoIterator<Item = &'a ScenarioError>) -> Option<Self> {
+        let mut refusals = refusals.into_iter().cloned();
+        let mut first = refusals.next()?;
+        first.also.extend(refusals);
+        Some(first)
     }
 
     /// Returns the same refusal with a place, unless it has one.

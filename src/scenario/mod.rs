@@ -17,19 +17,22 @@ mod path_spec;
 mod real;
 mod robot_edits;
 mod robots;
+mod start_pose;
 #[cfg(test)]
 mod tests;
 
 pub use crate::math::{ExpressionError, evaluate};
+pub use crate::task::{Plane, TaskKind};
 pub use document::ScenarioText;
 pub use error::{ErrorKind, Place, ScenarioError};
 pub use formulas::FormulaRows;
 pub use held::Held;
 pub use key_path::{KeyPath, Step};
-pub use model::{ArmSpec, LawKind, LawSpec, Mount, Scenario, Start, TaskKind};
-pub use path_spec::{PathKind, PathSpec, Plane, TimeLawKind, TurnSpec};
+pub use model::{ArmSpec, LawKind, LawSpec, Mount, Scenario, Start};
+pub use path_spec::{PathKind, PathSpec, TimeLawKind, TurnSpec};
 pub use real::Real;
 pub use robots::RobotSource;
+pub use start_pose::{OnPath, StartPose, TipPose};
 
 #[cfg(feature = "cli")]
 pub(crate) use document::read_text;

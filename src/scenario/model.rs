@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::held::Held;
 use super::path_spec::PathSpec;
 use super::real::{Real, exactly};
+use super::start_pose::StartPose;
+use crate::task::TaskKind;
 
 /// A plan to be made: how time is discretised, what moves, along what, and how redundancy is resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -85,7 +87,10 @@ pub enum LawKind {
 /// One arm: a chain of a robot, where it stands, how it begins and what its tip follows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, expecting = "a table [[arm]] with name, robot, base, tip, task, q0 and path")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table [[arm]] with name, robot, base, tip, task, q0 or start_pose, and path"
+)]
 pub struct ArmSpec {
     /// Name of the arm: letters, digits, `-` and `_`.
     pub name: String,
@@ -98,8 +103,13 @@ pub struct ArmSpec {
     pub tip: String,
     /// What of the tip follows the path.
     pub task: TaskKind,
-    /// Joint positions at the start in rad or m, one per joint of the chain in its order.
+    /// Joint positions at the start in rad or m, one per joint of the chain in its order. Beside `start_pose`: positions
+    /// that those found for it should be near.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub q0: Vec<Real>,
+    /// Where the tip starts, in place of `q0`: joint positions are solved for, within the limits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start_pose: Option<StartPose>,
     /// Pose of `base` in the world. Default: the world's own.
     #[serde(default, skip_serializing_if = "Mount::is_identity")]
     pub mount: Mount,
@@ -115,19 +125,6 @@ pub struct ArmSpec {
     pub lock: BTreeMap<String, Held>,
     /// The path of the tip.
     pub path: PathSpec,
-}
-
-/// What of the tip follows the path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum TaskKind {
-    /// Position in the plane, x and y.
-    PositionXy,
-    /// Position in space.
-    Position,
-    /// Position and orientation.
-    Pose,
 }
 
 /// A pose in the world, or in the link that something is put on.

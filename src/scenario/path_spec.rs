@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::real::{Real, exactly, some_exactly};
+use crate::task::Plane;
 
 /// A path for the tip. Curves are drawn in `plane`, turned by `rotation`, and shifted so that they begin at the
 /// tip's position at q0 unless `center` is given.
@@ -73,25 +74,6 @@ pub enum PathKind {
     Lissajous,
     /// radius cos(petals a) (cos a, sin a).
     Rose,
-}
-
-/// Planes of the world's axes; the first letter is the curve's own x.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum Plane {
-    /// World x and y.
-    Xy,
-    /// World y and z.
-    Yz,
-    /// World z and x.
-    Zx,
-    /// World y and x: the mirror image of xy, run the other way around.
-    Yx,
-    /// World z and y: the mirror image of yz, run the other way around.
-    Zy,
-    /// World x and z: the mirror image of zx, run the other way around.
-    Xz,
 }
 
 /// How the angle of a path runs from its beginning to its end.

@@ -256,6 +256,62 @@ fn a_value_of_the_wrong_type_is_told_what_to_write_in_words() {
     }
 }
 
+fn planned(assignments: &[&str]) -> Result<crate::planner::Planner, ScenarioError> {
+    // Two robots, six metres apart.
+    let assignments = [&["arm.right.mount={xyz=[6,0,0]}"], assignments].concat();
+    with(&assignments)?.planner(crate::formula::FormulaTable::builtin(), None)
+}
+
+fn tip_at(q: &[f64]) -> nalgebra::Vector3<f64> {
+    let chain = crate::robot::embedded::get("planar4").unwrap().chain("base", "tip").unwrap();
+    chain.forward(q, &mut chain.scratch()).position()
+}
+
+#[test]
+fn a_start_pose_is_solved_for_near_q0() {
+    let planner = planned(&["arm.left.start_pose={xyz=[1.5, \"pi/2\"]}"]).unwrap();
+    let q = planner.arm(0).positions.to_vec();
+    let tip = tip_at(&q);
+    assert!((tip.x - 1.5).abs() < 1e-12 && (tip.y - std::f64::consts::FRAC_PI_2).abs() < 1e-12, "{tip}");
+    let planner = planned(&["arm.left.start_pose={xyz=[1.5, 1.5]}", "arm.left.q0=[2, -1, -1, -1]"]).unwrap();
+    let other = planner.arm(0).positions;
+    assert!(q[1] * other[1] < 0.0 || (q[1] - other[1]).abs() > 0.1, "bent another way: {q:?} {other:?}");
+    let plan = planner.run();
+    assert!(plan.arms[0].start_distance.is_some_and(|distance| distance < 1e-11));
+    assert_eq!(plan.arms[1].start_distance, None);
+}
+
+#[test]
+fn an_arm_can_start_on_its_path() {
+    let path = "arm.left.path={kind=\"circle\", radius=0.2, center=[2, 0.5], rotation=\"pi/2\"}";
+    assert!(planned(&[path]).unwrap_err().message.contains("start_pose = \"path\""));
+    let planner = planned(&[path, "arm.left.start_pose=path"]).unwrap();
+    let tip = tip_at(planner.arm(0).positions);
+    assert!((tip - nalgebra::Vector3::new(2.0, 0.7, tip.z)).norm() < 1e-12, "{tip}");
+}
+
+#[test]
+fn a_start_pose_reads_back_as_it_was_written() {
+    for start in ["path", "{xyz=[1, \"pi/3\"]}", "{xyz=[1, 1, 0], rpy=[0, 0, \"pi/2\"]}"] {
+        let scenario =
+            with(&[&format!("arm.left.start_pose={start}"), "arm.left.path.center=[1,1,0]"]).unwrap();
+        assert!(scenario.arm[0].start_pose.is_some());
+        assert_eq!(read(&scenario.to_toml()).unwrap(), scenario, "{}", scenario.to_toml());
+    }
+}
+
+#[test]
+fn everything_that_is_wrong_is_said_at_once() {
+    let error =
+        with(&["sigma=-1", "law.threshold=-1", "arm.left.path.radius=-1", "arm.right.q0=[1e9,0,0,0]"]);
+    let error = error.unwrap_err();
+    let keys: Vec<String> = std::iter::once(&error)
+        .chain(&error.also)
+        .map(|error| error.path.as_ref().unwrap().to_string())
+        .collect();
+    assert_eq!(keys, ["sigma", "law.threshold", "arm.left.path.radius", "arm.right.q0[0]"]);
+}
+
 #[test]
 fn positions_are_those_of_the_file_whatever_is_set() {
     let mut text = ScenarioText::parse(&SMALL.replace("0.3, 0.4]", "true, 0.4]")).unwrap();

@@ -1,11 +1,14 @@
 use super::Reference;
 use crate::math::rotation_vector;
 use nalgebra::{IsometryMatrix3, Vector6};
+use serde::{Deserialize, Serialize};
 
 /// Which components of the tip's pose a task asks for.
 ///
 /// Every kind takes the leading rows of the geometric Jacobian (linear first, then angular).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
 pub enum TaskKind {
     /// The x and y coordinates of the tip in the world \[m\].
     PositionXy,

@@ -1,5 +1,6 @@
 use super::PlanarCurve;
 use nalgebra::{Rotation3, Unit, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// A point of a path with its derivative by the progress `u`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,20 +52,23 @@ impl Path for Box<dyn Path> {
     }
 }
 
-/// The plane in which a planar curve is drawn, in world axes: the directions of the curve's x and y.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The plane in which a planar curve is drawn, in world axes; the first letter is the direction of the curve's own x.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
 pub enum Plane {
     /// Curve x along world x, curve y along world y.
+    #[default]
     Xy,
     /// Curve x along world y, curve y along world z.
     Yz,
     /// Curve x along world z, curve y along world x.
     Zx,
-    /// The mirror image of [`Plane::Xy`]: curve x along world y, curve y along world x.
+    /// The mirror image of xy: curve x along world y, curve y along world x.
     Yx,
-    /// The mirror image of [`Plane::Yz`]: curve x along world z, curve y along world y.
+    /// The mirror image of yz: curve x along world z, curve y along world y.
     Zy,
-    /// The mirror image of [`Plane::Zx`]: curve x along world x, curve y along world z.
+    /// The mirror image of zx: curve x along world x, curve y along world z.
     Xz,
 }
 
