@@ -40,7 +40,7 @@ fn a_thousand_steps_of_two_seven_joint_arms_allocate_nothing() {
 fn shared() -> Planner {
     let arm = |tip: &str, side: f64| {
         let chain = embedded::get("torso14").unwrap().chain("floor", tip).unwrap();
-        let q0 = vec![0.2, 0.1, 0.3 * side, 0.4, -1.2, 0.2, 0.5, 0.1];
+        let q0 = vec![0.2, 0.1, -0.58 * side, -0.82, -0.7, -1.36 * side, 0.68, 0.08 * side];
         let pose = chain.forward(&q0, &mut chain.scratch()).pose();
         let path = Planar::new(Circle { radius: 0.05 }, Plane::Yz, 0.0, 0.0, TAU);
         let motion = Motion::from_pose(path, Sin2, 2.0, &pose);

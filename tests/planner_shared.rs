@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 
 const DURATION: f64 = 4.0;
 /// Lift and waist, then shoulder roll and pitch, elbow, wrist roll, pitch and yaw of one side.
-const LEFT: [f64; 8] = [0.2, 0.1, 0.3, 0.4, -1.2, 0.2, 0.5, 0.1];
-const RIGHT: [f64; 8] = [0.2, 0.1, -0.2, 0.5, -1.0, -0.1, 0.4, 0.2];
+const LEFT: [f64; 8] = [0.2, 0.1, -0.58, -0.82, -0.7, -1.36, 0.68, 0.08];
+const RIGHT: [f64; 8] = [0.2, 0.1, 0.5, -0.8, -0.75, 1.3, 0.7, -0.1];
 
 fn torso(base: &str, tip: &str) -> Chain {
     embedded::get("torso14").unwrap().chain(base, tip).unwrap()
