@@ -3,6 +3,8 @@
 //!     cargo run --example inverse_kinematics          a quick look
 //!     cargo run --example inverse_kinematics -- 1000  the table of docs/inverse.md
 
+#![allow(clippy::print_stdout, reason = "an example shows what it found")]
+
 use kinstep::inverse::{Search, Target};
 use kinstep::robot::{Chain, embedded};
 use std::f64::consts::PI;

@@ -9,6 +9,7 @@ use kinstep::planner::{Arm, Plan, Planner, PlannerError, Start};
 use kinstep::robot::{Chain, Robot, embedded};
 use kinstep::task::{Circle, Line, Motion, Planar, Plane, Quintic, TaskKind, TimeLaw};
 use std::f64::consts::TAU;
+use std::fmt::Write;
 
 const DURATION: f64 = 4.0;
 /// Lift and waist, then shoulder roll and pitch, elbow, wrist roll, pitch and yaw of one side.
@@ -163,7 +164,8 @@ fn the_order_of_the_arms_does_not_matter_and_others_may_stand_between_them() {
 fn tree() -> Robot {
     let mut urdf = r#"<robot name="tree"><link name="base"/>"#.to_owned();
     let mut joint = |name: &str, parent: &str, child: &str, kind: &str, x: f64| {
-        urdf += &format!(
+        let _ = write!(
+            urdf,
             r#"<link name="{child}"/><joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>
                <origin xyz="{x} 0 0"/><axis xyz="0 0 1"/></joint>"#
         );
