@@ -259,7 +259,7 @@ impl Mount {
 impl ArmSpec {
     /// Whether two arms are parts of one machine: of the same robot, with their bases at the same place.
     fn is_same_machine(&self, other: &Self) -> bool {
-(&self.robot, &self.base, &self.mount) == (&other.robot, &other.base, &other.mount)
+        (&self.robot, &self.base, &self.mount) == (&other.robot, &other.base, &other.mount)
             && (&self.calibration, &self.lock) == (&other.calibration, &other.lock)
     }
 }
