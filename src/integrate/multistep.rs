@@ -1,4 +1,4 @@
-use super::ring::Ring;
+use super::ring::{BLOCK, Ring};
 use super::runge_kutta::RungeKutta;
 use super::weights::Weights;
 use super::{Field, Parts, Scalar, Starter, Tableau};
@@ -63,7 +63,7 @@ pub struct Multistep<T> {
     x: Ring<T>,
     f: Ring<T>,
     g: Option<Ring<T>>,
-    next: Vec<T>,
+    next: Vec<[T; BLOCK]>,
     t0: T,
     sigma: T,
     index: usize,
@@ -114,7 +114,7 @@ impl<T: Scalar> Multistep<T> {
             g: (field.parts() != Parts::One).then(|| {
                 Ring::new(start.depth(|w| &w.second).max(weights.second.len()), dimension, T::zero())
             }),
-            next: vec![T::zero(); dimension],
+            next: vec![[T::zero(); BLOCK]; dimension.div_ceil(BLOCK)],
             weights,
             start,
             steps,
@@ -176,8 +176,10 @@ impl<T: Scalar> Multistep<T> {
         } else {
             self.advance_start(field);
         }
-        if self.next.iter().all(|entry| entry.is_finite()) {
-            self.x.push().copy_from_slice(&self.next);
+        // Every entry is looked at, whatever the others are: that is quicker than to stop early.
+        let all_finite = self.next.as_flattened().iter().fold(true, |all, entry| all & entry.is_finite());
+        if all_finite {
+            self.x.push_blocks().copy_from_slice(&self.next);
             self.index += 1;
         } else {
             self.status = Status::NonFinite;
@@ -196,16 +198,18 @@ impl<T: Scalar> Multistep<T> {
 
     fn advance_start(&mut self, field: &mut impl Field<T>) {
         let time = self.time();
+        if let Start::Rows(rows) = &self.start {
+            let row = &rows[self.index.min(rows.len() - 1)];
+            row.combine(&self.x, &self.f, self.g.as_ref(), &mut self.next);
+        }
+        let next = &mut self.next.as_flattened_mut()[..field.dimension()];
         match &mut self.start {
-            Start::Rows(rows) => {
-                let row = &rows[self.index.min(rows.len() - 1)];
-                row.combine(&self.x, &self.f, self.g.as_ref(), &mut self.next);
-            }
+            Start::Rows(_) => {}
             Start::RungeKutta(method) => {
                 let known = (self.x.get(0), self.f.get(0), self.g.as_ref().map(|g| g.get(0)));
-                method.step(field, time, self.sigma, known, &mut self.next);
+                method.step(field, time, self.sigma, known, next);
             }
-            Start::Given(states) => self.next.copy_from_slice(&states[self.index]),
+            Start::Given(states) => next.copy_from_slice(&states[self.index]),
         }
     }
 }

@@ -1,37 +1,49 @@
-/// The last few samples of a vector, newest first, in one allocation.
+/// Components are combined so many at a time: their sums stay in registers.
+pub(super) const BLOCK: usize = 8;
+
+/// The last few samples of a vector, newest first, in one allocation. Samples are filled up to whole blocks with zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Ring<T> {
-    samples: Vec<T>,
+    samples: Vec<[T; BLOCK]>,
     dimension: usize,
+    blocks: usize,
     capacity: usize,
     newest: usize,
 }
 
 impl<T: Copy> Ring<T> {
     pub(super) fn new(capacity: usize, dimension: usize, zero: T) -> Self {
-        Self { samples: vec![zero; capacity * dimension], dimension, capacity, newest: 0 }
+        let blocks = dimension.div_ceil(BLOCK);
+        Self { samples: vec![[zero; BLOCK]; capacity * blocks], dimension, blocks, capacity, newest: 0 }
     }
 
     /// The sample `age` steps before the newest; `age` is below the capacity.
     pub(super) fn get(&self, age: usize) -> &[T] {
+        &self.blocks(age).as_flattened()[..self.dimension]
+    }
+
+    /// The same in blocks, the last one filled up.
+    #[inline]
+    pub(super) fn blocks(&self, age: usize) -> &[[T; BLOCK]] {
         debug_assert!(age < self.capacity);
         let slot = self.newest + age;
         let slot = if slot >= self.capacity { slot - self.capacity } else { slot };
-        &self.samples[slot * self.dimension..(slot + 1) * self.dimension]
+        &self.samples[slot * self.blocks..][..self.blocks]
     }
 
     /// Makes room for a new sample (the oldest one goes) and lends it for writing.
     pub(super) fn push(&mut self) -> &mut [T] {
+        let dimension = self.dimension;
+        &mut self.push_blocks().as_flattened_mut()[..dimension]
+    }
+
+    /// The same in blocks; what is written beyond the dimension must be zero.
+    pub(super) fn push_blocks(&mut self) -> &mut [[T; BLOCK]] {
         if self.capacity == 0 {
             return &mut [];
         }
         self.newest = if self.newest == 0 { self.capacity - 1 } else { self.newest - 1 };
-        self.newest_mut()
-    }
-
-    /// The newest sample, to be written.
-    pub(super) fn newest_mut(&mut self) -> &mut [T] {
-        &mut self.samples[self.newest * self.dimension..(self.newest + 1) * self.dimension]
+        &mut self.samples[self.newest * self.blocks..][..self.blocks]
     }
 }
 

@@ -1,5 +1,5 @@
 use super::Scalar;
-use super::ring::Ring;
+use super::ring::{BLOCK, Ring};
 use crate::formula::Formula;
 use crate::math::Rational;
 
@@ -47,34 +47,39 @@ impl<T: Scalar> Weights<T> {
     ///
     /// The weights of the states sum to one in every consistent row, but not once they are rounded; what is missing would
     /// push every step the same way. So older states enter by their differences from the newest.
-    pub(super) fn combine(&self, x: &Ring<T>, f: &Ring<T>, g: Option<&Ring<T>>, next: &mut [T]) {
-        next.fill(T::zero());
-        if let Some(g) = g {
-            add(&self.second, g, next);
-        }
-        add(&self.first, f, next);
-        let newest = x.get(0);
-        for (age, &weight) in self.state.iter().enumerate().skip(1) {
-            if weight == T::zero() {
-                continue;
+    pub(super) fn combine(&self, x: &Ring<T>, f: &Ring<T>, g: Option<&Ring<T>>, next: &mut [[T; BLOCK]]) {
+        let newest = x.blocks(0);
+        for (block, (next, newest)) in next.iter_mut().zip(newest).enumerate() {
+            let mut sum = [T::zero(); BLOCK];
+            if let Some(g) = g {
+                add(&self.second, g, block, &mut sum);
             }
-            for ((sum, &sample), &newest) in next.iter_mut().zip(x.get(age)).zip(newest) {
-                *sum += weight * (sample - newest);
+            add(&self.first, f, block, &mut sum);
+            for (age, &weight) in self.state.iter().enumerate().skip(1) {
+                if weight == T::zero() {
+                    continue;
+                }
+                let sample = &x.blocks(age)[block];
+                for i in 0..BLOCK {
+                    sum[i] += weight * (sample[i] - newest[i]);
+                }
             }
-        }
-        for (sum, &newest) in next.iter_mut().zip(newest) {
-            *sum += newest;
+            for i in 0..BLOCK {
+                next[i] = sum[i] + newest[i];
+            }
         }
     }
 }
 
-fn add<T: Scalar>(weights: &[T], ring: &Ring<T>, next: &mut [T]) {
+#[inline(always)]
+fn add<T: Scalar>(weights: &[T], ring: &Ring<T>, block: usize, sum: &mut [T; BLOCK]) {
     for (age, &weight) in weights.iter().enumerate() {
         if weight == T::zero() {
             continue;
         }
-        for (sum, &sample) in next.iter_mut().zip(ring.get(age)) {
-            *sum += weight * sample;
+        let sample = &ring.blocks(age)[block];
+        for i in 0..BLOCK {
+            sum[i] += weight * sample[i];
         }
     }
 }

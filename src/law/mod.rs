@@ -1,12 +1,14 @@
 //! How redundancy is resolved: from task velocities to joint velocities.
 
 mod criterion;
+mod least_norm;
 mod pseudoinverse;
 mod stacked;
 
 pub use criterion::Criterion;
 pub use pseudoinverse::Pseudoinverse;
 
+pub(crate) use least_norm::least_norm;
 pub(crate) use stacked::StackedPseudoinverse;
 
 use nalgebra::Vector6;

@@ -1,5 +1,6 @@
+use super::least_norm::least_norm;
 use super::{Criterion, Demand, Law, Resolution};
-use crate::math::{GramCholesky, SingularValues};
+use crate::math::SingularValues;
 use nalgebra::Vector6;
 
 /// The default threshold, as a fraction of the length scale of the chain.
@@ -68,11 +69,8 @@ impl Pseudoinverse {
             criterion.velocity(demand.q, &mut self.c);
         }
         let homogeneous = self.criterion.is_some().then_some(&self.c[..]);
-        let gram = GramCholesky::<M>::new(demand.jacobian);
-        if let Some((gram, bound)) = gram.map(|g| (g, g.smallest_singular_value_bound()))
-            && bound > self.threshold
-        {
-            resolve_regular(&gram, demand, homogeneous, f, g);
+        let (bound, is_definite) = resolve_regular::<M>(demand, homogeneous, f, g);
+        if is_definite && bound > self.threshold {
             return Resolution { smallest_singular_value: bound, damped: false };
         }
         let Some(decomposition) = self.decomposition.as_mut().and_then(pick) else {
@@ -131,29 +129,31 @@ impl Law for Pseudoinverse {
     }
 }
 
-/// `f = c + J^T (J J^T)^-1 (phi' - J c)` and `g = J^T (J J^T)^-1 (-k e)`.
+/// `f = c + J^T (J J^T)^-1 (phi' - J c)` and `g = J^T (J J^T)^-1 (-k e)`; returns the bound of the smallest singular value
+/// and whether any of this means something.
 fn resolve_regular<const M: usize>(
-    gram: &GramCholesky<M>,
     demand: &Demand<'_>,
     homogeneous: Option<&[f64]>,
     f: &mut [f64],
     g: &mut [f64],
-) {
+) -> (f64, bool) {
+    let jacobian = demand.jacobian;
     let mut wanted = head::<M>(demand.feedforward);
     if let Some(c) = homogeneous {
-        subtract_image(demand.jacobian, c, &mut wanted);
+        subtract_image(jacobian, c, &mut wanted);
     }
-    let y = gram.solve(&wanted);
-    let z = gram.solve(&head::<M>(demand.feedback));
-    for (i, column) in demand.jacobian.iter().enumerate() {
-        let (mut forward, mut back) = (homogeneous.map_or(0.0, |c| c[i]), 0.0);
-        for row in 0..M {
-            forward += column[row] * y[row];
-            back += column[row] * z[row];
-        }
-        f[i] = forward;
-        g[i] = back;
-    }
+    let velocities = [&wanted, &head::<M>(demand.feedback)];
+    let found = least_norm(
+        (),
+        jacobian.len(),
+        |column, row| jacobian[column][row],
+        velocities,
+        |column, forward, back| {
+            f[column] = homogeneous.map_or(forward, |c| c[column] + forward);
+            g[column] = back;
+        },
+    );
+    (found.bound, found.smallest_pivot > 0.0)
 }
 
 fn resolve_near_singular<const M: usize>(

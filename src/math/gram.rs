@@ -1,12 +1,13 @@
-//! The normal equations of a short, wide matrix: `J J^T` and its Cholesky factorisation, of static size.
+//! The normal equations of a short, wide matrix: `J J^T` and its triangular factorisation, of static size.
 
+use super::lanes::Lanes;
 use nalgebra::Vector6;
 
-/// The Cholesky factorisation `G = L L^T` of the Gram matrix `G = J J^T` of the first `M` rows of `J`.
+/// The Cholesky factorisation without square roots, `G = L D L^T` (L unit lower triangular, D diagonal), of the Gram matrix `G = J J^T` of the first `M`
+/// rows of `J`.
 #[derive(Clone, Copy, Debug)]
 pub struct GramCholesky<const M: usize> {
-    /// `L` below the diagonal, and the reciprocals of its diagonal entries on it.
-    factor: [[f64; M]; M],
+    factor: LaneFactor<f64, M>,
 }
 
 impl<const M: usize> GramCholesky<M> {
@@ -15,81 +16,158 @@ impl<const M: usize> GramCholesky<M> {
     /// `None` when a pivot is not positive: the rows are dependent to working precision, or not finite.
     #[inline]
     pub fn new(columns: &[Vector6<f64>]) -> Option<Self> {
-        let mut factor = gram::<M>(columns);
-        // What lies above the diagonal is never read.
-        for k in 0..M {
-            let pivot = factor[k][k];
-            if !(pivot > 0.0 && pivot.is_finite()) {
-                return None;
-            }
-            let reciprocal = pivot.sqrt().recip();
-            factor[k][k] = reciprocal;
-            for i in k + 1..M {
-                factor[i][k] *= reciprocal;
-            }
-            for i in k + 1..M {
-                for j in k + 1..=i {
-                    factor[i][j] -= factor[i][k] * factor[j][k];
-                }
-            }
-        }
-        Some(Self { factor })
+        let factor = LaneFactor::of((), columns.len(), |column, row| columns[column][row]);
+        let is_definite = factor.smallest_pivot > 0.0 && factor.trace_of_inverse().is_finite();
+        is_definite.then_some(Self { factor })
     }
 
     /// The `y` with `J J^T y = v`.
+    #[inline]
     pub fn solve(&self, v: &[f64; M]) -> [f64; M] {
-        let l = &self.factor;
-        let mut y = *v;
-        for i in 0..M {
-            for j in 0..i {
-                y[i] -= l[i][j] * y[j];
-            }
-            y[i] *= l[i][i];
-        }
-        for i in (0..M).rev() {
-            for j in i + 1..M {
-                y[i] -= l[j][i] * y[j];
-            }
-            y[i] *= l[i][i];
-        }
-        y
+        self.factor.solve(v)
     }
 
     /// A lower bound of the smallest singular value of `J`, at most a factor `sqrt(M)` below it:
-    /// `1 / sqrt(trace(G^-1))`, where `trace(G^-1)` is the squared Frobenius norm of `L^-1`.
+    /// `1 / sqrt(trace(G^-1))`.
+    #[inline]
     pub fn smallest_singular_value_bound(&self) -> f64 {
-        let l = &self.factor;
-        let mut trace = 0.0;
-        for column in 0..M {
-            let mut inverse = [0.0; M];
-            inverse[column] = l[column][column];
-            trace += inverse[column] * inverse[column];
-            for i in column + 1..M {
-                let mut entry = 0.0;
-                for j in column..i {
-                    entry -= l[i][j] * inverse[j];
-                }
-                inverse[i] = entry * l[i][i];
-                trace += inverse[i] * inverse[i];
-            }
-        }
-        trace.sqrt().recip()
+        self.factor.smallest_singular_value_bound()
     }
 }
 
-/// `J J^T`, summed column by column: whole rows at a time, in constant bounds that the compiler can unroll.
-#[inline]
-fn gram<const M: usize>(columns: &[Vector6<f64>]) -> [[f64; M]; M] {
-    let mut gram = [[0.0; M]; M];
-    for column in columns {
-        let entries: [f64; M] = std::array::from_fn(|i| column[i]);
+/// The same for one matrix in each lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LaneFactor<V, const M: usize> {
+    /// `L` below the diagonal.
+    lower: [[V; M]; M],
+    /// `D^-1`.
+    inverse_pivots: [V; M],
+    /// The least entry of `D`; where it is not positive, nothing else here means anything.
+    pub(crate) smallest_pivot: V,
+}
+
+/// The most rows that [`rows`] can count.
+const MOST_ROWS: usize = 12;
+
+/// Evaluates `$body` with the constant `$i` = 0, ..., `$m` - 1. The compiler unrolls no triangular loops by itself, and only
+/// with constant indices do the numbers stay in registers.
+macro_rules! rows {
+    ($m:ident, $i:ident, $body:expr) => {
+        rows!($m, $i, $body; 0 1 2 3 4 5 6 7 8 9 10 11)
+    };
+    ($m:ident, $i:ident, $body:expr; $($index:literal)*) => {$(
+        if $index < $m {
+            const $i: usize = $index;
+            $body;
+        }
+    )*};
+}
+
+impl<V: Lanes, const M: usize> LaneFactor<V, M> {
+    /// Factorises `J J^T` for the `J` of `joints` columns that `entry(column, row)` reads.
+    #[inline(always)]
+    pub(crate) fn of(token: V::Token, joints: usize, entry: impl Fn(usize, usize) -> V) -> Self {
+        const { assert!(M > 0 && M <= MOST_ROWS) };
+        let zero = V::splat(token, 0.0);
+        let mut factor =
+            Self { lower: [[zero; M]; M], inverse_pivots: [zero; M], smallest_pivot: zero.like(f64::MAX) };
+        rows!(M, I, factor_row::<V, M, I>(&mut factor, joints, &entry));
+        factor
+    }
+
+    /// The `y` with `L D L^T y = v`.
+    #[inline(always)]
+    pub(crate) fn solve(&self, v: &[V; M]) -> [V; M] {
+        let mut y = *v;
+        rows!(M, I, substitute_forward::<V, M, I>(self, &mut y));
         for i in 0..M {
-            for j in 0..M {
-                gram[i][j] += entries[i] * entries[j];
-            }
+            y[i] = y[i] * self.inverse_pivots[i];
+        }
+        rows!(M, I, substitute_back::<V, M, I>(self, &mut y));
+        y
+    }
+
+    /// A lower bound of the smallest singular value of `J`, at most a factor `sqrt(M)` below it.
+    #[inline(always)]
+    pub(crate) fn smallest_singular_value_bound(&self) -> V {
+        self.smallest_pivot.like(1.0) / self.trace_of_inverse().sqrt()
+    }
+
+    /// The trace of `G^-1`: the squares of the entries of `L^-1`, each over the pivot of its row.
+    #[inline(always)]
+    fn trace_of_inverse(&self) -> V {
+        let zero = self.smallest_pivot.like(0.0);
+        let (mut inverse, mut trace) = ([[zero; M]; M], zero);
+        rows!(M, I, invert_row::<V, M, I>(self, &mut inverse, &mut trace));
+        trace
+    }
+}
+/// Row `I` of `G`, then of the factors: `u_j = g_j - sum_(k<j) u_k l_jk` with `u = d l`.
+#[inline(always)]
+fn factor_row<V: Lanes, const M: usize, const I: usize>(
+    factor: &mut LaneFactor<V, M>,
+    joints: usize,
+    entry: &impl Fn(usize, usize) -> V,
+) {
+    let zero = factor.smallest_pivot.like(0.0);
+    let mut row = [zero; M];
+    for column in 0..joints {
+        let own = entry(column, I);
+        for j in 0..=I {
+            row[j] = row[j] + own * entry(column, j);
         }
     }
-    gram
+    let mut scaled = [zero; M];
+    rows!(M, J, {
+        if J <= I {
+            for k in 0..J {
+                // In the last entry the other factor is this row itself, scaled.
+                let other = if J == I { scaled[k] } else { factor.lower[J][k] };
+                row[J] = row[J] - row[k] * other;
+            }
+            scaled[J] = row[J] * factor.inverse_pivots[J];
+        }
+    });
+    factor.lower[I] = scaled;
+    factor.inverse_pivots[I] = zero.like(1.0) / row[I];
+    factor.smallest_pivot = row[I].least(factor.smallest_pivot);
+}
+
+#[inline(always)]
+fn substitute_forward<V: Lanes, const M: usize, const I: usize>(factor: &LaneFactor<V, M>, y: &mut [V; M]) {
+    for j in 0..I {
+        y[I] = y[I] - factor.lower[I][j] * y[j];
+    }
+}
+
+/// Takes `y` of row `M - 1 - I`, which is final, out of the rows above it.
+#[inline(always)]
+fn substitute_back<V: Lanes, const M: usize, const I: usize>(factor: &LaneFactor<V, M>, y: &mut [V; M]) {
+    let last = M - 1 - I;
+    for j in 0..last {
+        y[j] = y[j] - factor.lower[last][j] * y[last];
+    }
+}
+
+/// Row `I` of `L^-1` below the diagonal, and its part of the trace.
+#[inline(always)]
+fn invert_row<V: Lanes, const M: usize, const I: usize>(
+    factor: &LaneFactor<V, M>,
+    inverse: &mut [[V; M]; M],
+    trace: &mut V,
+) {
+    let mut squares = trace.like(1.0);
+    rows!(M, J, {
+        if J < I {
+            let mut entry = -factor.lower[I][J];
+            for k in J + 1..I {
+                entry = entry - factor.lower[I][k] * inverse[k][J];
+            }
+            inverse[I][J] = entry;
+            squares = squares + entry * entry;
+        }
+    });
+    *trace = *trace + squares * factor.inverse_pivots[I];
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Rotations of space: the logarithm that orientation errors are made of.
 
+use super::lanes::Lanes;
 use nalgebra::{Rotation3, Vector3};
 
 /// The rotation vector of `rotation` \[rad\]: `log(R)^vee`, of length at most pi.
@@ -22,6 +23,47 @@ pub fn rotation_vector(rotation: &Rotation3<f64>) -> Vector3<f64> {
         return half_turn_axis(rotation, &skew) * angle;
     }
     if sine == 0.0 { skew } else { skew * (angle / sine) }
+}
+
+/// The sine times the axis and the cosine of the rotation `R D^T`, both given by their columns.
+///
+/// The skew part of a sum of dyads `r d^T` is half the sum of the cross products `d x r`; the trace is the sum of the
+/// products `r . d`.
+#[inline(always)]
+pub(crate) fn relative_rotation<V: Lanes>(r: &[[V; 3]; 3], d: &[[V; 3]; 3]) -> ([V; 3], V) {
+    let half = r[0][0].like(0.5);
+    let mut sine = [half.like(0.0); 3];
+    let mut trace = half.like(-1.0);
+    for (r, d) in r.iter().zip(d) {
+        sine[0] = sine[0] + (d[1] * r[2] - d[2] * r[1]);
+        sine[1] = sine[1] + (d[2] * r[0] - d[0] * r[2]);
+        sine[2] = sine[2] + (d[0] * r[1] - d[1] * r[0]);
+        trace = trace + (r[0] * d[0] + r[1] * d[1] + r[2] * d[2]);
+    }
+    ([sine[0] * half, sine[1] * half, sine[2] * half], trace * half)
+}
+
+/// The square of the sine up to which [`small_rotation_vector`] keeps full accuracy.
+const SMALL_SINE_SQUARED: f64 = 1.0 / 1024.0;
+
+/// The Taylor coefficients of `asin(s) / s` in `s^2`.
+const ARCSINE: [f64; 6] = [1.0, 1.0 / 6.0, 3.0 / 40.0, 5.0 / 112.0, 35.0 / 1152.0, 63.0 / 2816.0];
+
+/// The rotation vector of a small rotation \[rad\], from what [`relative_rotation`] found; `None` unless the rotations of all
+/// lanes are small.
+#[inline(always)]
+pub(crate) fn small_rotation_vector<V: Lanes>(sine: &[V; 3], cosine: V) -> Option<[V; 3]> {
+    let square = sine[0] * sine[0] + sine[1] * sine[1] + sine[2] * sine[2];
+    // A cosine within 1/2 of one tells small rotations from those by almost half a turn.
+    let is_small = square.all_within(SMALL_SINE_SQUARED) && (cosine - cosine.like(1.0)).all_within(0.5);
+    if !is_small {
+        return None;
+    }
+    let mut factor = square.like(ARCSINE[5]);
+    for &coefficient in ARCSINE[..5].iter().rev() {
+        factor = factor * square + square.like(coefficient);
+    }
+    Some([sine[0] * factor, sine[1] * factor, sine[2] * factor])
 }
 
 /// The unit axis of a rotation by almost pi, from the largest column of `(R + R^T) / 2 - cos(angle) I`, signed by the
@@ -63,6 +105,29 @@ mod tests {
             let turn = axis.normalize() * (std::f64::consts::PI - 10_f64.powf(exponent));
             prop_assert!((rotation_vector(&Rotation3::new(turn)) - turn).norm() < 1e-11);
         }
+    }
+
+    proptest! {
+        #[test]
+        fn the_series_for_small_rotations_is_the_logarithm(
+            x in -1.0..1.0_f64, y in -1.0..1.0_f64, z in -1.0..1.0_f64, exponent in -12.0..-1.6_f64,
+            other in proptest::array::uniform3(-3.0..3.0_f64),
+        ) {
+            let turn = Vector3::new(x, y, z) * 10_f64.powf(exponent);
+            let reference = Rotation3::new(Vector3::from(other));
+            let columns = |rotation: &Rotation3<f64>| rotation.matrix().data.0;
+            let (sine, cosine) =
+                relative_rotation(&columns(&(Rotation3::new(turn) * reference)), &columns(&reference));
+            let back = Vector3::from(small_rotation_vector(&sine, cosine).unwrap());
+            prop_assert!((back - turn).norm() < 4e-16, "{turn} {back}");
+        }
+    }
+
+    #[test]
+    fn rotations_by_almost_half_a_turn_are_not_small() {
+        let turn = Rotation3::new(Vector3::new(std::f64::consts::PI - 1e-3, 0.0, 0.0));
+        let (sine, cosine) = relative_rotation(&turn.matrix().data.0, &Rotation3::identity().matrix().data.0);
+        assert!(small_rotation_vector(&sine, cosine).is_none());
     }
 
     #[test]

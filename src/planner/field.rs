@@ -1,13 +1,17 @@
 use super::Arm;
+use super::bundle::{Bundle, Member};
 use super::shared::{self, SharedArms};
 use crate::integrate::{Field, Parts};
 use crate::law::{Demand, Resolution};
 use crate::robot::ChainScratch;
+use fearless_simd::Level;
 use nalgebra::Vector6;
 
 /// An arm with its scratch memory and what the last evaluation found.
 pub(super) struct ArmRuntime {
     pub(super) arm: Arm,
+    /// The chain's reach, or a metre where that is infinite.
+    pub(super) length: f64,
     scratch: ChainScratch,
     pub(super) columns: Vec<Vector6<f64>>,
     pub(super) error: Vector6<f64>,
@@ -22,7 +26,8 @@ impl ArmRuntime {
     pub(super) fn new(mut arm: Arm) -> Self {
         let joints = arm.chain.dof();
         let reach = arm.chain.reach();
-        arm.law.prepare(arm.task.rows(), joints, if reach.is_finite() { reach } else { 1.0 });
+        let length = if reach.is_finite() { reach } else { 1.0 };
+        arm.law.prepare(arm.task.rows(), joints, length);
         Self {
             scratch: arm.chain.scratch(),
             columns: vec![Vector6::zeros(); joints],
@@ -31,11 +36,12 @@ impl ArmRuntime {
             is_shared: false,
             has_too_few_joints: joints < arm.task.rows(),
             arm,
+            length,
         }
     }
 
     /// Forward kinematics, task error and both parts of the joint velocity at time `t`.
-    fn evaluate(&mut self, t: f64, gain: f64, q: &[f64], f: &mut [f64], g: &mut [f64]) {
+    pub(super) fn evaluate(&mut self, t: f64, gain: f64, q: &[f64], f: &mut [f64], g: &mut [f64]) {
         let twist = self.look(t, q);
         let demand = Demand {
             rows: self.arm.task.rows(),
@@ -64,7 +70,9 @@ pub(super) struct SynchronousField {
     pub(super) dimension: usize,
     /// Where the joints of each arm are found.
     places: Vec<Place>,
+    groups: Vec<Group>,
     pub(super) shared: Vec<SharedArms>,
+    level: Level,
 }
 
 /// Where the joints of an arm stand.
@@ -76,22 +84,42 @@ enum Place {
     Shared { set: usize, member: usize },
 }
 
+/// How arms that share no joints are evaluated.
+enum Group {
+    /// By itself: its law or its chain is of no common kind.
+    Alone(Member),
+    /// Side by side.
+    Two(Box<Bundle<[f64; 2]>>),
+    Four(Box<Bundle<[f64; 4]>>),
+}
+
 impl SynchronousField {
     pub(super) fn new(arms: Vec<Arm>, gain: f64) -> Self {
         let sets = shared::sets(&arms);
         let arms: Vec<_> = arms.into_iter().map(ArmRuntime::new).collect();
         let places = vec![Place::From(0); arms.len()];
-        let mut field = Self { arms, gain, dimension: 0, places, shared: Vec::new() };
+        let mut field = Self {
+            arms,
+            gain,
+            dimension: 0,
+            places,
+            groups: Vec::new(),
+            shared: Vec::new(),
+            level: Level::new(),
+        };
+        let mut apart = Vec::new();
         for arm in 0..field.arms.len() {
             match sets.iter().find(|set| set.contains(&arm)) {
                 Some(set) if set[0] == arm => field.add_shared(set),
                 Some(_) => {}
                 None => {
                     field.places[arm] = Place::From(field.dimension);
+                    apart.push(Member { arm, from: field.dimension });
                     field.dimension += field.arms[arm].arm.chain.dof();
                 }
             }
         }
+        field.groups = grouped(&field.arms, apart);
         field
     }
 
@@ -140,6 +168,25 @@ impl SynchronousField {
     }
 }
 
+/// Puts arms that fit together into bundles, in the order of their first members.
+fn grouped(arms: &[ArmRuntime], mut rest: Vec<Member>) -> Vec<Group> {
+    let mut groups = Vec::new();
+    while let Some(&first) = rest.first() {
+        let mut bundle = vec![first];
+        for &member in &rest[1..] {
+            bundle.push(member);
+            if Bundle::<[f64; 4]>::new(arms, &bundle).is_none() {
+                bundle.pop();
+            }
+        }
+        rest.retain(|member| bundle.iter().all(|taken| taken.arm != member.arm));
+        let two = || Bundle::new(arms, &bundle).map(|bundle| Group::Two(Box::new(bundle)));
+        let four = || Bundle::new(arms, &bundle).map(|bundle| Group::Four(Box::new(bundle)));
+        groups.push(two().or_else(four).unwrap_or(Group::Alone(first)));
+    }
+    groups
+}
+
 impl Field<f64> for SynchronousField {
     fn dimension(&self) -> usize {
         self.dimension
@@ -150,10 +197,19 @@ impl Field<f64> for SynchronousField {
     }
 
     fn evaluate(&mut self, t: f64, x: &[f64], f: &mut [f64], g: &mut [f64]) {
-        for (runtime, place) in self.arms.iter_mut().zip(&self.places) {
-            if let Place::From(from) = *place {
-                let range = from..from + runtime.arm.chain.dof();
-                runtime.evaluate(t, self.gain, &x[range.clone()], &mut f[range.clone()], &mut g[range]);
+        for group in &mut self.groups {
+            match group {
+                Group::Alone(member) => {
+                    let runtime = &mut self.arms[member.arm];
+                    let range = member.from..member.from + runtime.arm.chain.dof();
+                    runtime.evaluate(t, self.gain, &x[range.clone()], &mut f[range.clone()], &mut g[range]);
+                }
+                Group::Two(bundle) => {
+                    bundle.evaluate(self.level, &mut self.arms, (t, self.gain), x, [&mut *f, &mut *g]);
+                }
+                Group::Four(bundle) => {
+                    bundle.evaluate(self.level, &mut self.arms, (t, self.gain), x, [&mut *f, &mut *g]);
+                }
             }
         }
         for shared in &mut self.shared {

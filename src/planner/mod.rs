@@ -2,6 +2,7 @@
 
 mod arm;
 mod builder;
+mod bundle;
 mod diagnosis;
 mod error;
 mod field;

@@ -56,54 +56,136 @@ impl Worst {
     }
 }
 
+/// The squared lengths of a task error.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Deviation {
+    /// \[m^2\]
+    pub(super) position: f64,
+    /// \[rad^2\]
+    pub(super) orientation: f64,
+}
+
+impl Deviation {
+    pub(super) fn of(error: &Vector6<f64>) -> Self {
+        Self {
+            position: error.fixed_rows::<3>(0).norm_squared(),
+            orientation: error.fixed_rows::<3>(3).norm_squared(),
+        }
+    }
+}
+
 /// What is watched on every sample of one arm: errors, limits, conditioning. Nothing here allocates after `new`.
 #[derive(Clone, Debug)]
 pub(super) struct Monitor {
     position: Vec<Worst>,
     velocity: Vec<Worst>,
+    /// The positions one sample ago.
     previous: Vec<f64>,
-    pub(super) max_error: f64,
+    bounds: Bounds,
+    sigma: f64,
+    largest: Deviation,
+    largest_sum: f64,
     pub(super) max_error_component: f64,
-    pub(super) max_position_error: f64,
-    pub(super) max_orientation_error: f64,
     pub(super) damped_samples: usize,
     pub(super) smallest_singular_value: f64,
     pub(super) smallest_at: f64,
 }
 
+/// The limits of all joints, in the form in which most samples are done with at a glance.
+#[derive(Clone, Debug)]
+struct Bounds {
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    velocity: Vec<f64>,
+    /// How far a joint may go in one step, less what rounding could make of it.
+    stride: Vec<f64>,
+}
+
+impl Bounds {
+    fn of(chain: &Chain, sigma: f64) -> Self {
+        let all = |pick: fn(&crate::robot::Limits) -> f64| -> Vec<f64> {
+            chain.joints().iter().map(|joint| pick(&joint.limits)).collect()
+        };
+        let velocity = all(|limits| limits.velocity);
+        let stride = velocity.iter().map(|limit| limit * sigma * (1.0 - 1e-12)).collect();
+        Self { lower: all(|limits| limits.lower), upper: all(|limits| limits.upper), velocity, stride }
+    }
+
+    /// Whether no limit can have been crossed. Every joint is looked at, whatever the others are: that is quicker than to
+    /// stop early.
+    #[expect(clippy::needless_bitwise_bool, reason = "without branches the loop is vectorised")]
+    fn hold(&self, q: &[f64], velocity: &[f64], previous: &[f64]) -> bool {
+        let n = self.lower.len();
+        let (q, velocity, previous) = (&q[..n], &velocity[..n], &previous[..n]);
+        let (upper, fastest, stride) = (&self.upper[..n], &self.velocity[..n], &self.stride[..n]);
+        let mut all = true;
+        for i in 0..n {
+            all &= (q[i] >= self.lower[i])
+                & (q[i] <= upper[i])
+                & (velocity[i].abs() <= fastest[i])
+                & ((q[i] - previous[i]).abs() <= stride[i]);
+        }
+        all
+    }
+}
+
 impl Monitor {
-    pub(super) fn new(joints: usize) -> Self {
+    pub(super) fn new(chain: &Chain, sigma: f64) -> Self {
         Self {
-            position: vec![Worst::NONE; joints],
-            velocity: vec![Worst::NONE; joints],
-            previous: vec![f64::NAN; joints],
-            max_error: 0.0,
+            position: vec![Worst::NONE; chain.dof()],
+            velocity: vec![Worst::NONE; chain.dof()],
+            previous: vec![f64::NAN; chain.dof()],
+            bounds: Bounds::of(chain, sigma),
+            sigma,
+            largest: Deviation { position: 0.0, orientation: 0.0 },
+            largest_sum: 0.0,
             max_error_component: 0.0,
-            max_position_error: 0.0,
-            max_orientation_error: 0.0,
             damped_samples: 0,
             smallest_singular_value: f64::INFINITY,
             smallest_at: 0.0,
         }
     }
 
-    pub(super) fn observe_error(&mut self, error: &Vector6<f64>) {
-        let norm = error.norm();
-        self.max_error = self.max_error.max(norm);
-        self.max_error_component = self.max_error_component.max(error.amax());
-        self.max_position_error = self.max_position_error.max(error.fixed_rows::<3>(0).norm());
-        self.max_orientation_error = self.max_orientation_error.max(error.fixed_rows::<3>(3).norm());
+    pub(super) fn observe_error(&mut self, error: &Vector6<f64>, deviation: &Deviation) {
+        self.largest_sum = self.largest_sum.max(deviation.position + deviation.orientation);
+        self.largest.position = self.largest.position.max(deviation.position);
+        self.largest.orientation = self.largest.orientation.max(deviation.orientation);
+        self.max_error_component = error.iter().fold(self.max_error_component, |a, b| a.max(b.abs()));
     }
 
-    pub(super) fn observe_joints(&mut self, chain: &Chain, t: f64, sigma: f64, q: &[f64], velocity: &[f64]) {
-        for (i, joint) in chain.joints().iter().enumerate() {
-            let limits = &joint.limits;
-            self.position[i].observe(t, q[i], limits.lower, limits.upper);
-            self.velocity[i].observe(t, velocity[i], -limits.velocity, limits.velocity);
+    /// The largest norm of the task error.
+    pub(super) fn max_error(&self) -> f64 {
+        self.largest_sum.sqrt()
+    }
+
+    /// The largest position error \[m\].
+    pub(super) fn max_position_error(&self) -> f64 {
+        self.largest.position.sqrt()
+    }
+
+    /// The largest orientation error \[rad\].
+    pub(super) fn max_orientation_error(&self) -> f64 {
+        self.largest.orientation.sqrt()
+    }
+
+    pub(super) fn observe_joints(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
+        if !self.bounds.hold(q, velocity, &self.previous) {
+            self.look_closely(t, q, velocity);
+        }
+        self.previous.copy_from_slice(q);
+    }
+
+    /// Takes down the crossings of a sample that is not clearly within all limits.
+    #[cold]
+    fn look_closely(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
+        let bounds = &self.bounds;
+        for i in 0..q.len() {
+            let fastest = bounds.velocity[i];
+            self.position[i].observe(t, q[i], bounds.lower[i], bounds.upper[i]);
+            self.velocity[i].observe(t, velocity[i], -fastest, fastest);
             // NaN before the first step compares as no violation.
-            let mean = (q[i] - self.previous[i]) / sigma;
-            self.velocity[i].observe(t, mean, -limits.velocity, limits.velocity);
-            self.previous[i] = q[i];
+            let mean = (q[i] - self.previous[i]) / self.sigma;
+            self.velocity[i].observe(t, mean, -fastest, fastest);
         }
     }
 

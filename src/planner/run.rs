@@ -1,6 +1,6 @@
 use super::diagnosis;
 use super::field::{ArmRuntime, SynchronousField};
-use super::monitor::Monitor;
+use super::monitor::{Deviation, Monitor};
 use super::{ArmPlan, Plan, PlanStatus, PlannerBuilder};
 use crate::integrate::{Multistep, Status};
 use crate::task::Reference;
@@ -100,7 +100,8 @@ impl Planner {
 
     /// Takes a stepper whose first state has been evaluated.
     pub(super) fn begin(description: Description, stepper: Multistep<f64>, field: SynchronousField) -> Self {
-        let monitors = field.arms.iter().map(|runtime| Monitor::new(runtime.arm.chain.dof())).collect();
+        let sigma = description.sigma;
+        let monitors = field.arms.iter().map(|runtime| Monitor::new(&runtime.arm.chain, sigma)).collect();
         let was_singular = vec![true; field.arms.len()];
         let mut planner = Self { description, stepper, field, monitors, was_singular, stop: None };
         planner.watch();
@@ -216,11 +217,11 @@ impl Planner {
     fn conclude(self, mut arms: Vec<ArmPlan>) -> Plan {
         let mut warnings = self.description.warnings;
         for ((plan, monitor), runtime) in arms.iter_mut().zip(&self.monitors).zip(&self.field.arms) {
-            plan.max_error = monitor.max_error;
+            plan.max_error = monitor.max_error();
             plan.max_error_component = monitor.max_error_component;
             plan.max_error_steady = steady_maximum(&plan.errors);
-            plan.max_position_error = monitor.max_position_error;
-            plan.max_orientation_error = monitor.max_orientation_error;
+            plan.max_position_error = monitor.max_position_error();
+            plan.max_orientation_error = monitor.max_orientation_error();
             plan.smallest_singular_value = (monitor.smallest_singular_value, monitor.smallest_at);
             plan.damped_samples = monitor.damped_samples;
             plan.violations = monitor.violations(&runtime.arm.chain);
@@ -237,12 +238,12 @@ impl Planner {
 
     /// Observes the present sample: errors, limits, conditioning.
     fn watch(&mut self) {
-        let (t, sigma) = (self.stepper.time(), self.description.sigma);
+        let t = self.stepper.time();
         let (state, derivative) = (self.stepper.state(), self.stepper.derivative());
         for (i, (runtime, monitor)) in self.field.arms.iter().zip(&mut self.monitors).enumerate() {
             let [q, velocity] = self.field.joints_of(i, state, derivative);
-            monitor.observe_error(&runtime.error);
-            monitor.observe_joints(&runtime.arm.chain, t, sigma, q, velocity);
+            monitor.observe_error(&runtime.error, &Deviation::of(&runtime.error));
+            monitor.observe_joints(t, q, velocity);
             monitor.observe_conditioning(&runtime.resolution, t);
         }
     }
@@ -318,12 +319,10 @@ fn is_singular(runtime: &ArmRuntime, thresholds: f64) -> bool {
 
 /// Whether the task error lies within this fraction of the bounds at which a run is stopped; false for NaN.
 fn is_within(runtime: &ArmRuntime, fraction: f64) -> bool {
-    let position = runtime.error.fixed_rows::<3>(0).norm();
-    let orientation = runtime.error.fixed_rows::<3>(3).norm();
-    let reach = runtime.arm.chain.reach();
-    let bound = LOST_FRACTION_OF_REACH * if reach.is_finite() { reach } else { 1.0 };
+    let Deviation { position, orientation } = Deviation::of(&runtime.error);
+    let bound = LOST_FRACTION_OF_REACH * runtime.length;
     let fraction = if runtime.has_too_few_joints { WITH_TOO_FEW_JOINTS * fraction } else { fraction };
-    position <= fraction * bound && orientation <= fraction * LOST_ORIENTATION
+    position <= (fraction * bound).powi(2) && orientation <= (fraction * LOST_ORIENTATION).powi(2)
 }
 
 fn diverged(runtime: &ArmRuntime, t: f64, remedy: &str) -> Stop {

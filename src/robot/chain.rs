@@ -2,7 +2,7 @@
 
 use nalgebra::IsometryMatrix3;
 
-use super::kinematics::{Frame, Segment};
+use super::segment::{Folded, Frame, Single};
 use super::{ChainScratch, JointKind, Limits};
 
 /// A joint of a chain: one column of its Jacobian.
@@ -37,7 +37,8 @@ pub struct LimitViolation {
 /// The path runs up and down the tree through the common ancestor. Fixed joints are merged into constants and
 /// every moving axis is turned onto z, so that the pose of the tip in the base is
 /// `C_0 M_1 C_1 M_2 ... M_k C_k` with constants `C_i` and `M_i` a turn about z or a shift along z by
-/// `multiplier * q_column`. Mimic joints share the column of the joint that drives them.
+/// `multiplier * q_column`. The constants are brought into a form in which parallel and perpendicular axes and zero
+/// offsets cost nothing. Mimic joints share the column of the joint that drives them.
 ///
 /// ```
 /// use kinstep::robot::Robot;
@@ -65,8 +66,17 @@ pub struct Chain {
     pub(super) tip: String,
     pub(super) joints: Vec<ChainJoint>,
     pub(super) reach: f64,
-    pub(super) start: Frame,
-    pub(super) segments: Vec<Segment>,
+    pub(super) folded: Folded<Single>,
+    pub(super) places: Vec<Place>,
+}
+
+/// Which joint moves a segment: by `multiplier q_column`.
+#[derive(Debug, Clone)]
+pub(super) struct Place {
+    pub(super) multiplier: f64,
+    pub(super) column: usize,
+    /// Whether it is the first of its column on the path.
+    pub(super) opens_column: bool,
 }
 
 impl Chain {
@@ -103,13 +113,14 @@ impl Chain {
     #[must_use]
     pub fn mounted(&self, world_from_base: &IsometryMatrix3<f64>) -> Chain {
         let mut mounted = self.clone();
-        mounted.start = Frame::new(&(world_from_base * self.start.isometry()));
+        let start = self.folded.start.map(|[entry]| entry).isometry();
+        mounted.folded.start = Frame::new(&(world_from_base * start)).map(|entry| [entry]);
         mounted
     }
 
     /// Returns working memory for [`Chain::forward`]: one per thread.
     pub fn scratch(&self) -> ChainScratch {
-        ChainScratch::with_length(self.segments.len())
+        ChainScratch::with_length(self.places.len())
     }
 
     /// The smallest and largest position of each joint \[rad\] or \[m\], in the order of `q`.

@@ -2,8 +2,9 @@
 
 use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Translation3, Vector3};
 
-use super::kinematics::{Frame, Motion, Segment};
+use super::chain::Place;
 use super::path::{ChainError, Step};
+use super::segment::{Folded, Motion};
 use super::{Chain, ChainJoint, Joint, Limits, Robot};
 
 /// A moving joint of the path: `|multiplier| q_column + offset` along or about `direction`, in the frame
@@ -57,21 +58,19 @@ fn assemble(
     base: &str,
     tip: &str,
 ) -> Chain {
-    let after = moving.iter().skip(1).map(|next| &next.before).chain([last]);
+    let after = moving.iter().skip(1).map(|next| next.before).chain([*last]);
+    let constants: Vec<_> = moving.iter().map(|own| own.motion).zip(after).collect();
     let mut open = vec![true; joints.len()];
-    let mut segments = Vec::with_capacity(moving.len());
-    for (own, after) in moving.iter().zip(after) {
-        segments.push(Segment {
-            after: Frame::new(after),
-            multiplier: own.multiplier,
-            column: own.column,
-            opens_column: std::mem::take(&mut open[own.column]),
-            motion: own.motion,
-        });
-    }
+    let place = |own: &Moving| Place {
+        multiplier: own.multiplier,
+        column: own.column,
+        opens_column: std::mem::take(&mut open[own.column]),
+    };
+    let places = moving.iter().map(place).collect();
     // Where nothing moves, the whole chain is one constant.
-    let start = Frame::new(moving.first().map_or(last, |first| &first.before));
-    Chain { base: base.to_owned(), tip: tip.to_owned(), joints, reach, start, segments }
+    let start = moving.first().map_or(last, |first| &first.before);
+    let folded = Folded::new(start, &constants);
+    Chain { base: base.to_owned(), tip: tip.to_owned(), joints, reach, folded, places }
 }
 
 /// Returns a rotation whose third column is the unit vector `axis`; exact when the axis is a coordinate axis.

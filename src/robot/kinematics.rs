@@ -1,54 +1,35 @@
-//! Pose and geometric Jacobian of a chain, in one pass over flat constants.
+//! Pose and geometric Jacobian of a chain, in one pass over folded constants.
 
-use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Translation3, Vector3, Vector6};
+use fearless_simd::{Level, Simd, f64x4};
+use nalgebra::{IsometryMatrix3, Vector3, Vector6};
 
 use super::Chain;
-
-/// Three components and an idle fourth, so that two 128-bit or one 256-bit register hold a column.
-type Column = [f64; 4];
-
-/// A pose as the columns of its rotation matrix and its origin.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
-    x: Column,
-    y: Column,
-    z: Column,
-    p: Column,
-}
-
-/// A moving axis of a chain and the constant that follows it.
-#[derive(Debug, Clone)]
-pub(super) struct Segment {
-    pub(super) after: Frame,
-    pub(super) multiplier: f64,
-    pub(super) column: usize,
-    /// Whether it is the first of its column on the path.
-    pub(super) opens_column: bool,
-    pub(super) motion: Motion,
-}
-
-/// How a segment moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Motion {
-    /// About z \[rad\].
-    Turn,
-    /// Along z \[m\].
-    Shift,
-}
+use super::segment::{Folded, Frame, Motion, Single, Twist, load_three};
+use crate::math::{Kernel, Lanes, sines_and_cosines, with_instructions};
 
 /// A moving axis with the origin of its frame, both in the base's axes.
 #[derive(Debug, Clone, Copy)]
-struct Axis {
-    direction: Column,
-    origin: Column,
+pub(super) struct Axis<A> {
+    pub(super) direction: [A; 3],
+    pub(super) origin: [A; 3],
+}
+
+/// The joint positions of a chain in the order of its segments, their sines and their cosines: lane by lane, filled up
+/// with zeros to whole vectors of four.
+#[derive(Debug, Clone)]
+pub(super) struct Motions {
+    pub(super) values: Vec<f64>,
+    sines: Vec<f64>,
+    cosines: Vec<f64>,
 }
 
 /// Working memory of [`Chain::forward`]. It belongs to no robot: one per thread will do.
 #[derive(Debug, Clone)]
 pub struct ChainScratch {
-    motions: Vec<(f64, f64)>,
-    axes: Vec<Axis>,
-    tip: Frame,
+    level: Level,
+    motions: Motions,
+    axes: Vec<Axis<Single>>,
+    tip: Frame<f64>,
 }
 
 /// A chain whose kinematics have been run: the proof is that you hold it.
@@ -58,82 +39,149 @@ pub struct Posed<'a> {
     scratch: &'a ChainScratch,
 }
 
-/// Returns `a + b s`.
-#[inline]
-fn add_scaled(a: Column, b: Column, s: f64) -> Column {
-    [a[0] + b[0] * s, a[1] + b[1] * s, a[2] + b[2] * s, a[3] + b[3] * s]
-}
-
-#[inline]
-fn scale(a: Column, s: f64) -> Column {
-    [a[0] * s, a[1] * s, a[2] * s, a[3] * s]
-}
-
-fn column(v: Vector3<f64>) -> Column {
-    [v.x, v.y, v.z, 0.0]
-}
-
-fn vector(c: Column) -> Vector3<f64> {
-    Vector3::new(c[0], c[1], c[2])
-}
-
-impl Frame {
-    const IDENTITY: Frame = Frame {
-        x: [1.0, 0.0, 0.0, 0.0],
-        y: [0.0, 1.0, 0.0, 0.0],
-        z: [0.0, 0.0, 1.0, 0.0],
-        p: [0.0, 0.0, 0.0, 0.0],
-    };
-
-    pub(super) fn new(pose: &IsometryMatrix3<f64>) -> Frame {
-        let rotation = pose.rotation.matrix();
-        Frame {
-            x: column(rotation.column(0).into()),
-            y: column(rotation.column(1).into()),
-            z: column(rotation.column(2).into()),
-            p: column(pose.translation.vector),
-        }
+impl Motions {
+    pub(super) fn with_length(length: usize) -> Motions {
+        let zeros = vec![0.0; length.next_multiple_of(4)];
+        Motions { values: zeros.clone(), sines: zeros.clone(), cosines: zeros }
     }
 
-    pub(super) fn isometry(&self) -> IsometryMatrix3<f64> {
-        let rotation = Matrix3::from_columns(&[vector(self.x), vector(self.y), vector(self.z)]);
-        IsometryMatrix3::from_parts(
-            Translation3::from(vector(self.p)),
-            Rotation3::from_matrix_unchecked(rotation),
-        )
+    /// Fills in the sines and cosines of the values.
+    #[inline(always)]
+    pub(super) fn turn<S: Simd>(&mut self, simd: S) {
+        sines_and_cosines::<f64x4<S>>(simd, &self.values, &mut self.sines, &mut self.cosines);
     }
+}
 
-    /// Returns `R v`.
-    #[inline]
-    fn turn(&self, v: &Column) -> Column {
-        add_scaled(add_scaled(scale(self.x, v[0]), self.y, v[1]), self.z, v[2])
+impl<A: Copy> Axis<A> {
+    pub(super) fn nowhere(zero: A) -> Axis<A> {
+        Axis { direction: [zero; 3], origin: [zero; 3] }
     }
+}
 
-    /// Returns the product of two poses.
-    #[inline]
-    fn then(&self, next: &Frame) -> Frame {
-        let moved = self.turn(&next.p);
-        Frame {
-            x: self.turn(&next.x),
-            y: self.turn(&next.y),
-            z: self.turn(&next.z),
-            p: add_scaled(self.p, moved, 1.0),
-        }
-    }
-
+impl<V: Lanes> Frame<V> {
     /// Turns the frame about its own z.
-    #[inline]
-    fn turn_about_z(&mut self, sine: f64, cosine: f64) {
+    #[inline(always)]
+    fn turn_about_z(&mut self, sine: V, cosine: V) {
         let (x, y) = (self.x, self.y);
-        self.x = add_scaled(scale(x, cosine), y, sine);
-        self.y = add_scaled(scale(y, cosine), x, -sine);
+        for i in 0..3 {
+            self.x[i] = x[i] * cosine + y[i] * sine;
+            self.y[i] = y[i] * cosine - x[i] * sine;
+        }
     }
+
+    /// Turns the frame about its own x.
+    #[inline(always)]
+    fn twist(&mut self, token: V::Token, twist: &Twist<V::Array>) {
+        let (y, z) = (self.y, self.z);
+        match twist {
+            Twist::None => {}
+            Twist::Quarter => (self.y, self.z) = (z, [-y[0], -y[1], -y[2]]),
+            Twist::BackQuarter => (self.y, self.z) = ([-z[0], -z[1], -z[2]], y),
+            Twist::Any([sine, cosine]) => {
+                let (sine, cosine) = (V::load(token, sine), V::load(token, cosine));
+                for i in 0..3 {
+                    self.y[i] = y[i] * cosine + z[i] * sine;
+                    self.z[i] = z[i] * cosine - y[i] * sine;
+                }
+            }
+        }
+    }
+
+    /// Shifts the frame along one of its own axes.
+    #[inline(always)]
+    fn shift(&mut self, axis: [V; 3], by: V) {
+        for i in 0..3 {
+            self.p[i] = self.p[i] + axis[i] * by;
+        }
+    }
+}
+
+/// Runs along the chain, leaves every moving axis in `axes` and returns the tip.
+#[inline(always)]
+pub(super) fn forward<'a, V: Lanes>(
+    token: V::Token,
+    folded: &Folded<V::Array>,
+    motions: &'a Motions,
+    axes: &mut [Axis<V::Array>],
+) -> Frame<V> {
+    let mut frame = folded.start.load::<V>(token);
+    let lanes = |values: &'a [f64]| values.chunks_exact(V::WIDTH);
+    let turns = lanes(&motions.sines).zip(lanes(&motions.cosines));
+    let moves = lanes(&motions.values).zip(turns);
+    for ((segment, axis), (value, (sine, cosine))) in folded.segments.iter().zip(axes).zip(moves) {
+        for i in 0..3 {
+            frame.z[i].store(&mut axis.direction[i]);
+            frame.p[i].store(&mut axis.origin[i]);
+        }
+        match segment.motion {
+            Motion::Turn => frame.turn_about_z(V::load_slice(token, sine), V::load_slice(token, cosine)),
+            Motion::Shift => frame.shift(frame.z, V::load_slice(token, value)),
+        }
+        if let Some([sine, cosine]) = &segment.offset {
+            frame.turn_about_z(V::load(token, sine), V::load(token, cosine));
+        }
+        if segment.is_shifted[0] {
+            frame.shift(frame.x, V::load(token, &segment.translation[0]));
+        }
+        if segment.is_shifted[1] {
+            frame.shift(frame.y, V::load(token, &segment.translation[1]));
+        }
+        if segment.is_shifted[2] {
+            frame.shift(frame.z, V::load(token, &segment.translation[2]));
+        }
+        frame.twist(token, &segment.twist);
+    }
+    if let Some([sine, cosine]) = &folded.finish {
+        frame.turn_about_z(V::load(token, sine), V::load(token, cosine));
+    }
+    frame
+}
+
+/// Returns the twist of the tip at `p` that an axis gives per unit of its motion: `(z x (p - o); z)` for a turning one,
+/// `(z; 0)` for a sliding one.
+#[inline(always)]
+pub(super) fn twist_of<V: Lanes>(
+    token: V::Token,
+    axis: &Axis<V::Array>,
+    motion: Motion,
+    p: &[V; 3],
+) -> [V; 6] {
+    let z = load_three::<V>(token, &axis.direction);
+    if motion == Motion::Shift {
+        let zero = V::splat(token, 0.0);
+        return [z[0], z[1], z[2], zero, zero, zero];
+    }
+    let o = load_three::<V>(token, &axis.origin);
+    let d = [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
+    let v = [z[1] * d[2] - z[2] * d[1], z[2] * d[0] - z[0] * d[2], z[0] * d[1] - z[1] * d[0]];
+    [v[0], v[1], v[2], z[0], z[1], z[2]]
 }
 
 impl ChainScratch {
     pub(super) fn with_length(length: usize) -> ChainScratch {
-        let nowhere = Axis { direction: [0.0; 4], origin: [0.0; 4] };
-        ChainScratch { motions: vec![(0.0, 1.0); length], axes: vec![nowhere; length], tip: Frame::IDENTITY }
+        ChainScratch {
+            level: Level::new(),
+            motions: Motions::with_length(length),
+            axes: vec![Axis::nowhere([0.0]); length],
+            tip: Frame::IDENTITY,
+        }
+    }
+}
+
+/// One pass over one chain.
+struct Pass<'a> {
+    folded: &'a Folded<Single>,
+    motions: &'a mut Motions,
+    axes: &'a mut [Axis<Single>],
+}
+
+impl Kernel for Pass<'_> {
+    type Output = Frame<f64>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Frame<f64> {
+        self.motions.turn(simd);
+        forward::<f64>((), self.folded, self.motions, self.axes)
     }
 }
 
@@ -145,27 +193,14 @@ impl Chain {
     /// When `q` has not [`Chain::dof`] entries.
     pub fn forward<'a>(&'a self, q: &[f64], scratch: &'a mut ChainScratch) -> Posed<'a> {
         assert_eq!(q.len(), self.dof(), "one position per joint of the chain");
-        if scratch.axes.len() < self.segments.len() {
+        if scratch.axes.len() < self.places.len() {
             *scratch = self.scratch();
         }
-        for (segment, motion) in self.segments.iter().zip(&mut scratch.motions) {
-            let value = segment.multiplier * q[segment.column];
-            *motion = match segment.motion {
-                Motion::Turn => value.sin_cos(),
-                Motion::Shift => (value, 0.0),
-            };
+        for (value, place) in scratch.motions.values.iter_mut().zip(&self.places) {
+            *value = place.multiplier * q[place.column];
         }
-        let mut frame = self.start;
-        let moving = self.segments.iter().zip(&scratch.motions).zip(&mut scratch.axes);
-        for ((segment, &(first, second)), axis) in moving {
-            *axis = Axis { direction: frame.z, origin: frame.p };
-            match segment.motion {
-                Motion::Turn => frame.turn_about_z(first, second),
-                Motion::Shift => frame.p = add_scaled(frame.p, frame.z, first),
-            }
-            frame = frame.then(&segment.after);
-        }
-        scratch.tip = frame;
+        let pass = Pass { folded: &self.folded, motions: &mut scratch.motions, axes: &mut scratch.axes };
+        scratch.tip = with_instructions(scratch.level, pass);
         Posed { chain: self, scratch }
     }
 }
@@ -178,7 +213,7 @@ impl Posed<'_> {
 
     /// Returns the tip's position in the base \[m\].
     pub fn position(&self) -> Vector3<f64> {
-        vector(self.scratch.tip.p)
+        self.scratch.tip.p.into()
     }
 
     /// Returns the number of columns: [`Chain::dof`].
@@ -197,19 +232,13 @@ impl Posed<'_> {
     /// When `columns` has not [`Chain::dof`] entries.
     pub fn geometric_jacobian(&self, columns: &mut [Vector6<f64>]) {
         assert_eq!(columns.len(), self.dof(), "one column per joint of the chain");
-        let p = self.scratch.tip.p;
-        for (segment, axis) in self.chain.segments.iter().zip(&self.scratch.axes) {
-            let z = scale(axis.direction, segment.multiplier);
-            let twist = match segment.motion {
-                Motion::Turn => {
-                    let d = add_scaled(p, axis.origin, -1.0);
-                    let v = [z[1] * d[2] - z[2] * d[1], z[2] * d[0] - z[0] * d[2], z[0] * d[1] - z[1] * d[0]];
-                    Vector6::new(v[0], v[1], v[2], z[0], z[1], z[2])
-                }
-                Motion::Shift => Vector6::new(z[0], z[1], z[2], 0.0, 0.0, 0.0),
-            };
-            let column = &mut columns[segment.column];
-            if segment.opens_column { *column = twist } else { *column += twist }
+        let p = &self.scratch.tip.p;
+        let segments = self.chain.folded.segments.iter().zip(&self.chain.places);
+        for ((segment, place), axis) in segments.zip(&self.scratch.axes) {
+            let twist = twist_of::<f64>((), axis, segment.motion, p);
+            let twist = Vector6::from(twist.map(|entry| entry * place.multiplier));
+            let column = &mut columns[place.column];
+            if place.opens_column { *column = twist } else { *column += twist }
         }
     }
 }

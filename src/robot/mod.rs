@@ -21,6 +21,8 @@ mod names;
 mod path;
 mod poses;
 mod positions;
+mod segment;
+mod side_by_side;
 mod toml_table;
 mod tool;
 mod tree;
@@ -39,3 +41,5 @@ pub use positions::PositionsError;
 pub use tool::ToolError;
 pub use tree::{TreeRow, TreeRows};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, ReadError, UrdfError, UrdfOptions};
+
+pub(crate) use side_by_side::{SideBySide, SideBySideScratch};

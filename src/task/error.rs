@@ -1,6 +1,6 @@
 use super::Reference;
-use crate::math::rotation_vector;
-use nalgebra::{IsometryMatrix3, Vector6};
+use crate::math::{LaneArray, Lanes, relative_rotation, rotation_vector, small_rotation_vector};
+use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector6};
 use serde::{Deserialize, Serialize};
 
 /// Which components of the tip's pose a task asks for.
@@ -49,9 +49,58 @@ impl TaskKind {
             Self::PositionXy => Vector6::new(offset.x, offset.y, 0.0, 0.0, 0.0, 0.0),
             Self::Position => Vector6::new(offset.x, offset.y, offset.z, 0.0, 0.0, 0.0),
             Self::Pose => {
-                let turn = rotation_vector(&(tip.rotation * reference.rotation.inverse()));
-                Vector6::new(offset.x, offset.y, offset.z, turn.x, turn.y, turn.z)
+                let columns = |rotation: &Rotation3<f64>| rotation.matrix().data.0;
+                let turn = orientation_error(&columns(&tip.rotation), &columns(&reference.rotation));
+                Vector6::new(offset.x, offset.y, offset.z, turn[0], turn[1], turn[2])
             }
         }
     }
+}
+
+/// `log(R R_d^T)^vee`, both rotations given by their columns.
+fn orientation_error(r: &[[f64; 3]; 3], d: &[[f64; 3]; 3]) -> [f64; 3] {
+    let (sine, cosine) = relative_rotation(r, d);
+    small_rotation_vector(&sine, cosine).unwrap_or_else(|| {
+        let matrix = |columns: &[[f64; 3]; 3]| Matrix3::from_fn(|row, column| columns[column][row]);
+        rotation_vector(&Rotation3::from_matrix_unchecked(matrix(r) * matrix(d).transpose())).into()
+    })
+}
+
+/// The first `M` rows (2, 3 or 6) of the task errors of all lanes: the same as [`TaskKind::error`] in each.
+#[inline(always)]
+pub(crate) fn pose_error<V: Lanes<Array: LaneArray>, const M: usize>(
+    (tip, tip_rotation): (&[V; 3], &[[V; 3]; 3]),
+    (wanted, wanted_rotation): (&[V; 3], &[[V; 3]; 3]),
+    token: V::Token,
+) -> [V; M] {
+    let mut error = [wanted[0]; M];
+    for i in 0..M.min(3) {
+        error[i] = tip[i] - wanted[i];
+    }
+    if M == 6 {
+        let (sine, cosine) = relative_rotation(tip_rotation, wanted_rotation);
+        let turn = match small_rotation_vector(&sine, cosine) {
+            Some(turn) => turn,
+            None => turn_one_by_one(token, tip_rotation, wanted_rotation),
+        };
+        error[3..].copy_from_slice(&turn);
+    }
+    error
+}
+
+/// The orientation errors of lanes of which not all are small.
+#[cold]
+#[inline(never)]
+fn turn_one_by_one<V: Lanes<Array: LaneArray>>(token: V::Token, r: &[[V; 3]; 3], d: &[[V; 3]; 3]) -> [V; 3] {
+    let stored = |columns: &[[V; 3]; 3]| columns.map(|column| column.map(Lanes::to_array));
+    let (r, d) = (stored(r), stored(d));
+    let mut turns = [V::Array::ZERO; 3];
+    for lane in 0..V::WIDTH {
+        let own =
+            |columns: &[[V::Array; 3]; 3]| columns.map(|column| column.map(|entry| entry.as_ref()[lane]));
+        for (turn, entry) in turns.iter_mut().zip(orientation_error(&own(&r), &own(&d))) {
+            turn.as_mut()[lane] = entry;
+        }
+    }
+    turns.map(|turn| V::load(token, &turn))
 }

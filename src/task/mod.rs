@@ -8,6 +8,8 @@ mod time_law;
 
 pub use curve::{Astroid, Circle, Line, Lissajous, PlanarCurve, Rose, Tricuspid};
 pub use error::TaskKind;
+
+pub(crate) use error::pose_error;
 pub use motion::{Motion, Reference};
 pub use path::{Path, PathPoint, Planar, Plane, Turning};
 pub use time_law::{Linear, Quintic, Sin2, Sin2Sin2, TimeLaw};

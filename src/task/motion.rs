@@ -12,10 +12,18 @@ pub struct Reference {
     pub twist: Vector6<f64>,
 }
 
-/// A path run through in a given time, laid to where an arm stands.
-///
-/// `p(t) = origin + path(u(t / T))`, `R(t) = turn(u(t / T)) R_0`.
+/// What a tip shall do in the course of time: a path run through in a given time and laid to where an arm stands,
+/// `p(t) = origin + path(u(t / T))`, `R(t) = turn(u(t / T)) R_0`, or references sampled beforehand.
 pub struct Motion {
+    course: Course,
+}
+
+enum Course {
+    Curve(Curve),
+    Samples { references: Vec<Reference>, sigma: f64 },
+}
+
+struct Curve {
     path: Box<dyn Path>,
     time_law: Box<dyn TimeLaw>,
     duration: f64,
@@ -25,10 +33,14 @@ pub struct Motion {
 
 impl std::fmt::Debug for Motion {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Motion")
-            .field("duration", &self.duration)
-            .field("origin", &self.origin)
-            .finish_non_exhaustive()
+        let mut motion = f.debug_struct("Motion");
+        match &self.course {
+            Course::Curve(curve) => motion.field("duration", &curve.duration).field("origin", &curve.origin),
+            Course::Samples { references, sigma } => {
+                motion.field("samples", &references.len()).field("sigma", sigma)
+            }
+        };
+        motion.finish_non_exhaustive()
     }
 }
 
@@ -52,11 +64,42 @@ impl Motion {
         center: Vector3<f64>,
         initial: Rotation3<f64>,
     ) -> Self {
-        Self { path: Box::new(path), time_law: Box::new(time_law), duration, origin: center, initial }
+        let (path, time_law) = (Box::new(path), Box::new(time_law));
+        Self { course: Course::Curve(Curve { path, time_law, duration, origin: center, initial }) }
+    }
+
+    /// References that were computed or recorded elsewhere, the first at `t = 0` and then every `sigma` \[s\]: sample `n`
+    /// holds around `t = n sigma`, the last one, at rest, ever after.
+    ///
+    /// Runge-Kutta starters look between the samples; give the first states yourself, or start by `paper` or `ramp`.
+    ///
+    /// # Panics
+    /// When there are no references, or `sigma` is not positive.
+    pub fn sampled(references: Vec<Reference>, sigma: f64) -> Self {
+        assert!(!references.is_empty(), "a sampled motion needs at least one reference");
+        assert!(sigma > 0.0, "the sampling gap of a motion must be positive");
+        Self { course: Course::Samples { references, sigma } }
     }
 
     /// The reference at time `t` \[s\]; before the beginning and after the end the motion rests.
     pub fn at(&self, t: f64) -> Reference {
+        match &self.course {
+            Course::Curve(curve) => curve.at(t),
+            Course::Samples { references, sigma } => {
+                let (place, last) = (t / sigma + 0.5, references.len() - 1);
+                let index = place as usize;
+                let mut reference = references[index.min(last)];
+                if place < 0.0 || index > last {
+                    reference.twist = Vector6::zeros();
+                }
+                reference
+            }
+        }
+    }
+}
+
+impl Curve {
+    fn at(&self, t: f64) -> Reference {
         let tau = t / self.duration;
         let (u, mut rate) = self.time_law.progress(tau.clamp(0.0, 1.0));
         rate = if (0.0..=1.0).contains(&tau) { rate / self.duration } else { 0.0 };
@@ -110,6 +153,19 @@ mod tests {
             assert_eq!(here, swapped, "{mirrored:?}");
             assert_ne!(here, there, "{mirrored:?}");
         }
+    }
+
+    #[test]
+    fn samples_hold_around_their_times_and_rest_outside() {
+        let motion = motion();
+        let references: Vec<_> = (0..=20).map(|n| motion.at(0.1 * f64::from(n))).collect();
+        let sampled = Motion::sampled(references, 0.1);
+        for n in 0..=20 {
+            assert_eq!(sampled.at(0.1 * f64::from(n)), motion.at(0.1 * f64::from(n)));
+        }
+        assert_eq!(sampled.at(0.52), motion.at(0.5));
+        assert_eq!(sampled.at(7.0).position, motion.at(2.0).position);
+        assert_eq!((sampled.at(7.0).twist, sampled.at(-1.0).twist), (Vector6::zeros(), Vector6::zeros()));
     }
 
     #[test]

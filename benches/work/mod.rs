@@ -1,0 +1,116 @@
+//! The works that are timed and counted, by name.
+
+use kinstep::formula::FormulaTable;
+use kinstep::math::GramCholesky;
+use kinstep::nalgebra::{IsometryMatrix3, Vector3, Vector6};
+use kinstep::planner::{Arm, Planner, Start};
+use kinstep::robot::{Chain, embedded};
+use kinstep::task::{Circle, Motion, Planar, Sin2, TaskKind};
+use std::hint::black_box;
+
+/// One repetition; the result only keeps the compiler from leaving it out.
+pub type Work = Box<dyn FnMut() -> f64>;
+
+const ARMS: [(&str, &str, &str, &[f64]); 4] = [
+    ("ur5e", "base_link", "tool0", &[0.2, -1.3, 1.7, -1.4, -1.2, 0.4]),
+    ("panda", "panda_link0", "panda_link8", &[0.1, -0.4, 0.2, -2.1, 0.3, 1.8, 0.6]),
+    ("iiwa14", "iiwa_link_0", "iiwa_link_ee", &[0.1, 0.6, 0.2, -1.4, 0.3, 1.1, 0.4]),
+    (
+        "baxter",
+        "left_hand",
+        "right_hand",
+        &[0.1, 0.6, 0.2, 1.4, 0.3, 1.1, 0.4, 0.1, 0.6, 0.2, 1.4, 0.3, 1.1, 0.4],
+    ),
+];
+
+/// Steps of a plan before it begins anew.
+const STEPS: usize = 4000;
+const SIGMA: f64 = 1e-3;
+
+/// Every work, in the order in which they are listed.
+pub const NAMES: [&str; 9] = [
+    "kinematics ur5e",
+    "kinematics panda",
+    "kinematics iiwa14",
+    "kinematics baxter",
+    "solve",
+    "step 1 panda",
+    "step 2 pandas",
+    "step 2 pandas, path computed",
+    "step 2 pandas, split-ab6",
+];
+
+/// Returns the work of that name.
+pub fn by_name(name: &str) -> Option<Work> {
+    Some(match name {
+        "solve" => solve(),
+        "step 1 panda" => steps(1, "la6-wang-guo", 0.4, true),
+        "step 2 pandas" => steps(2, "la6-wang-guo", 0.4, true),
+        "step 2 pandas, path computed" => steps(2, "la6-wang-guo", 0.4, false),
+        "step 2 pandas, split-ab6" => steps(2, "split-ab6", 1.0, true),
+        _ => kinematics(name.strip_prefix("kinematics ")?),
+    })
+}
+
+fn arm(robot: &str) -> (Chain, &'static [f64]) {
+    let (_, base, tip, q) = ARMS.iter().find(|arm| arm.0 == robot).expect("an arm of the list");
+    let chain =
+        embedded::get(robot).expect("an embedded robot").chain(base, tip).expect("a chain of that robot");
+    (chain, q)
+}
+
+/// Forward kinematics and geometric Jacobian of one arm.
+fn kinematics(robot: &str) -> Work {
+    let (chain, q) = arm(robot);
+    let mut scratch = chain.scratch();
+    let mut columns = vec![Vector6::zeros(); chain.dof()];
+    Box::new(move || {
+        let posed = chain.forward(black_box(q), &mut scratch);
+        posed.geometric_jacobian(&mut columns);
+        black_box(&columns);
+        posed.pose().translation.x
+    })
+}
+
+/// Gram matrix, factorisation, solution and bound of the smallest singular value of one 6 x 7 Jacobian.
+fn solve() -> Work {
+    let (chain, q) = arm("panda");
+    let mut columns = vec![Vector6::zeros(); chain.dof()];
+    chain.forward(q, &mut chain.scratch()).geometric_jacobian(&mut columns);
+    Box::new(move || {
+        let gram = GramCholesky::<6>::new(black_box(&columns)).expect("a regular configuration");
+        gram.solve(black_box(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))[0] + gram.smallest_singular_value_bound()
+    })
+}
+
+fn panda(name: String, side: f64, is_sampled: bool) -> Arm {
+    let (chain, q) = arm("panda");
+    let chain = chain.mounted(&IsometryMatrix3::new(Vector3::new(0.0, side, 0.0), Vector3::zeros()));
+    let start = chain.forward(q, &mut chain.scratch()).pose();
+    let duration = STEPS as f64 * SIGMA;
+    let mut motion = Motion::from_pose(Planar::whole(Circle { radius: 0.05 }), Sin2, duration, &start);
+    if is_sampled {
+        motion = Motion::sampled((0..=STEPS).map(|n| motion.at(n as f64 * SIGMA)).collect(), SIGMA);
+    }
+    Arm::new(name, chain, q.to_vec(), TaskKind::Pose, motion)
+}
+
+fn planner(arms: usize, formula: &str, h: f64, is_sampled: bool) -> Planner {
+    let formula = FormulaTable::builtin().get(formula).expect("a row of the built-in table");
+    let arms = (0..arms).map(|i| panda(format!("arm {i}"), 0.5 * i as f64, is_sampled));
+    let duration = STEPS as f64 * SIGMA;
+    let builder = Planner::builder().formula(formula).sigma(SIGMA).duration(duration).h(h);
+    builder.start(Start::Paper).arms(arms).build().expect("a plan within range")
+}
+
+/// One step of Pandas on full-pose paths: kinematics, Jacobians, errors, solves, checks and history.
+fn steps(arms: usize, formula: &'static str, h: f64, is_sampled: bool) -> Work {
+    let mut running = planner(arms, formula, h, is_sampled);
+    Box::new(move || {
+        if running.is_finished() {
+            running = planner(arms, formula, h, is_sampled);
+        }
+        running.step();
+        running.arm(0).positions[0]
+    })
+}

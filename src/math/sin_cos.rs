@@ -1,0 +1,160 @@
+//! Sines and cosines of many angles together.
+
+use super::lanes::Lanes;
+
+/// Beyond this angle \[rad\] the reduction by three parts of pi/2 would lose digits; few joints turn so far.
+const FARTHEST: f64 = 1e6;
+
+/// pi/2 in three parts: the first two have 33 bits, so that their products with whole numbers below 2^20 are exact
+/// (the splitting of fdlibm, Sun Microsystems 1993).
+const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
+
+/// Minimax coefficients of `(sin r - r) / r^3` in `r^2` for `|r| <= pi/4` (fdlibm).
+const SINE: [f64; 6] = [
+    -1.666_666_666_666_663_2e-1,
+    8.333_333_333_322_49e-3,
+    -1.984_126_982_985_795e-4,
+    2.755_731_370_707_006_8e-6,
+    -2.505_076_025_340_686_3e-8,
+    1.589_690_995_211_55e-10,
+];
+
+/// Minimax coefficients of `(cos r - 1 + r^2/2) / r^4` in `r^2` for `|r| <= pi/4` (fdlibm).
+const COSINE: [f64; 6] = [
+    4.166_666_666_666_66e-2,
+    -1.388_888_888_887_411e-3,
+    2.480_158_728_947_673e-5,
+    -2.755_731_435_139_066_3e-7,
+    2.087_572_321_298_175e-9,
+    -1.135_964_755_778_819_5e-11,
+];
+
+/// Writes the sines and cosines of `angles` \[rad\], `V::WIDTH` at a time; what does not fill the last vector is left alone.
+#[inline(always)]
+pub(crate) fn sines_and_cosines<V: Lanes>(
+    token: V::Token,
+    angles: &[f64],
+    sines: &mut [f64],
+    cosines: &mut [f64],
+) {
+    let out = sines.chunks_exact_mut(V::WIDTH).zip(cosines.chunks_exact_mut(V::WIDTH));
+    for (angles, (sines, cosines)) in angles.chunks_exact(V::WIDTH).zip(out) {
+        let x = V::load_slice(token, angles);
+        if x.all_within(FARTHEST) {
+            let (sine, cosine) = sin_cos(x);
+            sine.store_slice(sines);
+            cosine.store_slice(cosines);
+        } else {
+            one_by_one(angles, sines, cosines);
+        }
+    }
+}
+
+/// Angles too large for [`sin_cos`], and those that are not finite.
+#[cold]
+fn one_by_one(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
+    for ((&angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
+        (*sine, *cosine) = if angle.abs() < FARTHEST { sin_cos(angle) } else { angle.sin_cos() };
+    }
+}
+
+/// The sine and the cosine, each to two units in the last place of one: `|x| < 1e6`.
+#[inline(always)]
+fn sin_cos<V: Lanes>(x: V) -> (V, V) {
+    let turns = (x * x.like(std::f64::consts::FRAC_2_PI) + x.like(0.5)).floor();
+    let [high, middle, low] = HALF_PI.map(|part| turns * x.like(part));
+    let r = x - high - middle - low;
+    let square = r * r;
+    let sine = r + square * r * polynomial(square, &SINE);
+    let half = square * x.like(0.5);
+    let near_one = x.like(1.0) - half;
+    let lost = (x.like(1.0) - near_one) - half;
+    let cosine = near_one + (lost + square * square * polynomial(square, &COSINE));
+    into_quadrant(turns, sine, cosine)
+}
+
+#[inline(always)]
+fn polynomial<V: Lanes>(x: V, coefficients: &[f64; 6]) -> V {
+    let mut value = x.like(coefficients[5]);
+    for &coefficient in coefficients[..5].iter().rev() {
+        value = value * x + x.like(coefficient);
+    }
+    value
+}
+
+/// Turns the pair by `turns` quarter turns: an odd number swaps it, and the signs follow.
+#[inline(always)]
+fn into_quadrant<V: Lanes>(turns: V, sine: V, cosine: V) -> (V, V) {
+    let (one, two, half) = (turns.like(1.0), turns.like(2.0), turns.like(0.5));
+    let pairs = (turns * half).floor();
+    let odd = turns - two * pairs;
+    let sign = one - two * (pairs - two * (pairs * half).floor());
+    let cosine_sign = sign * (one - two * odd);
+    (V::pick(odd, sine, cosine) * sign, V::pick(odd, cosine, sine) * cosine_sign)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::lanes::{Kernel, with_instructions};
+    use fearless_simd::{Level, Simd, f64x2, f64x4};
+    use proptest::prelude::*;
+
+    /// By four, by two and one by one, with every set of instructions of this machine.
+    struct AllWidths<'a>(&'a [f64; 4]);
+
+    impl Kernel for AllWidths<'_> {
+        type Output = [[f64; 8]; 3];
+
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let mut all = [[0.0; 8]; 3];
+            let [four, two, one] = &mut all;
+            let (sines, cosines) = four.split_at_mut(4);
+            sines_and_cosines::<f64x4<S>>(simd, self.0, sines, cosines);
+            let (sines, cosines) = two.split_at_mut(4);
+            sines_and_cosines::<f64x2<S>>(simd, self.0, sines, cosines);
+            let (sines, cosines) = one.split_at_mut(4);
+            sines_and_cosines::<f64>((), self.0, sines, cosines);
+            all
+        }
+    }
+
+    fn check(angles: [f64; 4]) {
+        let wide = with_instructions(Level::new(), AllWidths(&angles));
+        let base = with_instructions(Level::baseline(), AllWidths(&angles));
+        assert_eq!(format!("{wide:?}"), format!("{base:?}"), "{angles:?}");
+        for row in &wide[1..] {
+            assert_eq!(format!("{row:?}"), format!("{:?}", wide[0]), "{angles:?}");
+        }
+        for (i, angle) in angles.into_iter().enumerate().filter(|(_, angle)| angle.is_finite()) {
+            let (sine, cosine) = angle.sin_cos();
+            assert!((wide[0][i] - sine).abs() <= 2.5e-16, "sin {angle}");
+            assert!((wide[0][i + 4] - cosine).abs() <= 2.5e-16, "cos {angle}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn all_widths_and_instructions_agree_and_are_right(
+            angles in proptest::array::uniform4(-10.0..10.0_f64), exponent in -9.0..7.0_f64,
+        ) {
+            check(angles);
+            check(angles.map(|angle| angle * 10_f64.powf(exponent)));
+        }
+
+        #[test]
+        fn small_results_keep_their_relative_accuracy(turns in -1000..1000_i32) {
+            let angle = f64::from(turns) * std::f64::consts::FRAC_PI_2;
+            let ((sine, cosine), exact) = (sin_cos(angle), angle.sin_cos());
+            prop_assert!((sine - exact.0).abs() <= 4e-16 * exact.0.abs());
+            prop_assert!((cosine - exact.1).abs() <= 4e-16 * exact.1.abs());
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_gives_nan_and_harms_no_neighbour() {
+        check([f64::NAN, 1.0, f64::INFINITY, 1e300]);
+        assert_eq!(sin_cos(0.0), (0.0, 1.0));
+    }
+}
