@@ -5,8 +5,9 @@ use kinstep::math::GramCholesky;
 use kinstep::nalgebra::{IsometryMatrix3, Vector3, Vector6};
 use kinstep::planner::{Arm, Planner, Start};
 use kinstep::robot::{Chain, embedded};
-use kinstep::task::{Circle, Motion, Planar, Sin2, TaskKind};
+use kinstep::task::{Circle, Motion, Planar, Reference, Sin2, TaskKind};
 use std::hint::black_box;
+use std::sync::Arc;
 
 /// One repetition; the result only keeps the compiler from leaving it out.
 pub type Work = Box<dyn FnMut() -> f64>;
@@ -24,7 +25,7 @@ const ARMS: [(&str, &str, &str, &[f64]); 4] = [
 ];
 
 /// Steps of a plan before it begins anew.
-const STEPS: usize = 4000;
+const STEPS: usize = 20_000;
 const SIGMA: f64 = 1e-3;
 
 /// Every work, in the order in which they are listed.
@@ -83,32 +84,38 @@ fn solve() -> Work {
     })
 }
 
-fn panda(name: String, side: f64, is_sampled: bool) -> Arm {
+fn panda(side: f64) -> (Chain, &'static [f64]) {
     let (chain, q) = arm("panda");
-    let chain = chain.mounted(&IsometryMatrix3::new(Vector3::new(0.0, side, 0.0), Vector3::zeros()));
-    let start = chain.forward(q, &mut chain.scratch()).pose();
-    let duration = STEPS as f64 * SIGMA;
-    let mut motion = Motion::from_pose(Planar::whole(Circle { radius: 0.05 }), Sin2, duration, &start);
-    if is_sampled {
-        motion = Motion::sampled((0..=STEPS).map(|n| motion.at(n as f64 * SIGMA)).collect(), SIGMA);
-    }
-    Arm::new(name, chain, q.to_vec(), TaskKind::Pose, motion)
+    (chain.mounted(&IsometryMatrix3::new(Vector3::new(0.0, side, 0.0), Vector3::zeros())), q)
 }
 
-fn planner(arms: usize, formula: &str, h: f64, is_sampled: bool) -> Planner {
-    let formula = FormulaTable::builtin().get(formula).expect("a row of the built-in table");
-    let arms = (0..arms).map(|i| panda(format!("arm {i}"), 0.5 * i as f64, is_sampled));
-    let duration = STEPS as f64 * SIGMA;
-    let builder = Planner::builder().formula(formula).sigma(SIGMA).duration(duration).h(h);
-    builder.start(Start::Paper).arms(arms).build().expect("a plan within range")
+/// A circle from where the arm stands.
+fn circle(chain: &Chain, q: &[f64]) -> Motion {
+    let start = chain.forward(q, &mut chain.scratch()).pose();
+    Motion::from_pose(Planar::whole(Circle { radius: 0.05 }), Sin2, STEPS as f64 * SIGMA, &start)
 }
 
 /// One step of Pandas on full-pose paths: kinematics, Jacobians, errors, solves, checks and history.
 fn steps(arms: usize, formula: &'static str, h: f64, is_sampled: bool) -> Work {
-    let mut running = planner(arms, formula, h, is_sampled);
+    let formula = FormulaTable::builtin().get(formula).expect("a row of the built-in table");
+    let pandas: Vec<_> = (0..arms).map(|i| panda(0.5 * i as f64)).collect();
+    let sample = |motion: &Motion| (0..=STEPS).map(|n| motion.at(n as f64 * SIGMA)).collect();
+    let samples: Vec<Arc<[Reference]>> = pandas.iter().map(|(chain, q)| sample(&circle(chain, q))).collect();
+    let begin = move || {
+        let arms = pandas.iter().zip(&samples).enumerate().map(|(i, ((chain, q), samples))| {
+            let motion = match is_sampled {
+                true => Motion::sampled(Arc::clone(samples), SIGMA),
+                false => circle(chain, q),
+            };
+            Arm::new(format!("arm {i}"), chain.clone(), q.to_vec(), TaskKind::Pose, motion)
+        });
+        let builder = Planner::builder().formula(formula).sigma(SIGMA).duration(STEPS as f64 * SIGMA).h(h);
+        builder.start(Start::Paper).arms(arms).build().expect("a plan within range")
+    };
+    let mut running = begin();
     Box::new(move || {
         if running.is_finished() {
-            running = planner(arms, formula, h, is_sampled);
+            running = begin();
         }
         running.step();
         running.arm(0).positions[0]

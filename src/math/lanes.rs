@@ -28,6 +28,10 @@ pub(crate) trait Lanes:
 
     fn load_slice(token: Self::Token, values: &[f64]) -> Self;
 
+    /// The reals that `value` gives for each lane. They come straight from where they lie: a vector loaded right after its
+    /// lanes were written one by one has to wait for them.
+    fn gather(token: Self::Token, value: impl FnMut(usize) -> f64) -> Self;
+
     fn store(self, values: &mut Self::Array);
 
     fn store_slice(self, values: &mut [f64]);
@@ -52,22 +56,38 @@ pub(crate) trait Lanes:
 pub(crate) trait LaneArray: Copy + Debug + AsRef<[f64]> + AsMut<[f64]> + Send {
     /// The vector on a machine with the instructions `S`.
     type Vector<S: Simd>: Lanes<Token = S, Array = Self>;
+    /// One of something for each lane.
+    type Of<T: Copy>: Copy + AsRef<[T]> + AsMut<[T]>;
     /// How many reals it holds.
     const WIDTH: usize;
     /// Zero in every lane.
     const ZERO: Self;
+
+    fn each<T: Copy>(value: impl FnMut(usize) -> T) -> Self::Of<T>;
 }
 
 impl LaneArray for [f64; 2] {
     type Vector<S: Simd> = f64x2<S>;
+    type Of<T: Copy> = [T; 2];
     const WIDTH: usize = 2;
     const ZERO: Self = [0.0; 2];
+
+    #[inline(always)]
+    fn each<T: Copy>(value: impl FnMut(usize) -> T) -> [T; 2] {
+        std::array::from_fn(value)
+    }
 }
 
 impl LaneArray for [f64; 4] {
     type Vector<S: Simd> = f64x4<S>;
+    type Of<T: Copy> = [T; 4];
     const WIDTH: usize = 4;
     const ZERO: Self = [0.0; 4];
+
+    #[inline(always)]
+    fn each<T: Copy>(value: impl FnMut(usize) -> T) -> [T; 4] {
+        std::array::from_fn(value)
+    }
 }
 
 impl Lanes for f64 {
@@ -93,6 +113,11 @@ impl Lanes for f64 {
     #[inline(always)]
     fn load_slice((): (), values: &[f64]) -> Self {
         values[0]
+    }
+
+    #[inline(always)]
+    fn gather((): (), mut value: impl FnMut(usize) -> f64) -> Self {
+        value(0)
     }
 
     #[inline(always)]
@@ -161,6 +186,11 @@ macro_rules! vector_lanes {
             #[inline(always)]
             fn load_slice(token: S, values: &[f64]) -> Self {
                 <Self as SimdBase<S>>::from_slice(token, values)
+            }
+
+            #[inline(always)]
+            fn gather(token: S, value: impl FnMut(usize) -> f64) -> Self {
+                <Self as SimdBase<S>>::from_fn(token, value)
             }
 
             #[inline(always)]

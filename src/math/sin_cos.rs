@@ -29,22 +29,28 @@ const COSINE: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// Writes the sines and cosines of `angles` \[rad\], `V::WIDTH` at a time; what does not fill the last vector is left alone.
+/// Writes the sines and cosines of the angles \[rad\] that `angle` gives by index, `V::WIDTH` at a time; what does not fill
+/// the last vector is left alone.
 #[inline(always)]
 pub(crate) fn sines_and_cosines<V: Lanes>(
     token: V::Token,
-    angles: &[f64],
+    angle: impl Fn(usize) -> f64,
     sines: &mut [f64],
     cosines: &mut [f64],
 ) {
     let out = sines.chunks_exact_mut(V::WIDTH).zip(cosines.chunks_exact_mut(V::WIDTH));
-    for (angles, (sines, cosines)) in angles.chunks_exact(V::WIDTH).zip(out) {
-        let x = V::load_slice(token, angles);
+    for (chunk, (sines, cosines)) in out.enumerate() {
+        let x = V::gather(
+            token,
+            #[inline(always)]
+            |lane| angle(chunk * V::WIDTH + lane),
+        );
         if x.all_within(FARTHEST) {
             let (sine, cosine) = sin_cos(x);
             sine.store_slice(sines);
             cosine.store_slice(cosines);
         } else {
+            let angles = (chunk * V::WIDTH..).map(&angle);
             one_by_one(angles, sines, cosines);
         }
     }
@@ -52,8 +58,8 @@ pub(crate) fn sines_and_cosines<V: Lanes>(
 
 /// Angles too large for [`sin_cos`], and those that are not finite.
 #[cold]
-fn one_by_one(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
-    for ((&angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
+fn one_by_one(angles: impl Iterator<Item = f64>, sines: &mut [f64], cosines: &mut [f64]) {
+    for ((angle, sine), cosine) in angles.zip(sines).zip(cosines) {
         (*sine, *cosine) = if angle.abs() < FARTHEST { sin_cos(angle) } else { angle.sin_cos() };
     }
 }
@@ -111,11 +117,11 @@ mod tests {
             let mut all = [[0.0; 8]; 3];
             let [four, two, one] = &mut all;
             let (sines, cosines) = four.split_at_mut(4);
-            sines_and_cosines::<f64x4<S>>(simd, self.0, sines, cosines);
+            sines_and_cosines::<f64x4<S>>(simd, |i| self.0[i], sines, cosines);
             let (sines, cosines) = two.split_at_mut(4);
-            sines_and_cosines::<f64x2<S>>(simd, self.0, sines, cosines);
+            sines_and_cosines::<f64x2<S>>(simd, |i| self.0[i], sines, cosines);
             let (sines, cosines) = one.split_at_mut(4);
-            sines_and_cosines::<f64>((), self.0, sines, cosines);
+            sines_and_cosines::<f64>((), |i| self.0[i], sines, cosines);
             all
         }
     }

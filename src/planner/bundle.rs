@@ -9,7 +9,7 @@ use fearless_simd::{Level, Simd};
 use nalgebra::Vector6;
 
 /// Up to `A::WIDTH` arms with chains of one shape, tasks of one kind and the plain least-norm law.
-pub(super) struct Bundle<A> {
+pub(super) struct Bundle<A: LaneArray> {
     /// The arms by index, each with the place of its first joint in the state; repeated to fill all lanes.
     members: Vec<Member>,
     /// How many of them are not repetitions.
@@ -17,8 +17,9 @@ pub(super) struct Bundle<A> {
     task: TaskKind,
     chains: SideBySide<A>,
     scratch: SideBySideScratch<A>,
-    wanted: Wanted<A>,
     velocities: Vec<[A; 2]>,
+    /// The references that were not recorded beforehand.
+    computed: A::Of<Reference>,
 }
 
 /// One arm of a bundle.
@@ -27,15 +28,6 @@ pub(super) struct Member {
     pub(super) arm: usize,
     /// Index of its first joint in the state.
     pub(super) from: usize,
-}
-
-/// The references of all lanes.
-#[derive(Clone, Copy)]
-struct Wanted<A> {
-    position: [A; 3],
-    /// The columns of the rotation matrices.
-    rotation: [[A; 3]; 3],
-    twist: [A; 6],
 }
 
 /// What an evaluation found in all lanes.
@@ -64,8 +56,8 @@ impl<A: LaneArray> Bundle<A> {
             members: lanes.collect(),
             task,
             scratch: chains.scratch(),
-            wanted: Wanted { position: [A::ZERO; 3], rotation: [[A::ZERO; 3]; 3], twist: [A::ZERO; 6] },
             velocities: vec![[A::ZERO; 2]; chains.dof()],
+            computed: A::each(|_| Reference::REST),
             chains,
         })
     }
@@ -80,14 +72,27 @@ impl<A: LaneArray> Bundle<A> {
         [f, g]: [&mut [f64]; 2],
     ) {
         let joints = self.chains.dof();
+        let motion = |member: &Member| &arms[member.arm].arm.motion;
         for (lane, member) in self.members.iter().enumerate() {
-            self.wanted.set(lane, &arms[member.arm].arm.motion.at(t));
-            self.scratch.set_positions(lane, &x[member.from..member.from + joints]);
+            if motion(member).recorded(t).is_none() {
+                self.computed.as_mut()[lane] = motion(member).at(t);
+            }
         }
+        let computed = self.computed.as_ref();
+        let references = A::each(|lane| motion(&self.members[lane]).recorded(t).unwrap_or(&computed[lane]));
+        let q = A::each(|lane| &x[self.members[lane].from..][..joints]);
+        let evaluation = Evaluation {
+            chains: &self.chains,
+            scratch: &mut self.scratch,
+            references: &references,
+            q: &q,
+            velocities: &mut self.velocities,
+            gain,
+        };
         let found = match self.task {
-            TaskKind::PositionXy => with_instructions(level, self.evaluation::<2>(gain)),
-            TaskKind::Position => with_instructions(level, self.evaluation::<3>(gain)),
-            TaskKind::Pose => with_instructions(level, self.evaluation::<6>(gain)),
+            TaskKind::PositionXy => with_instructions(level, Rows::<_, 2>(evaluation)),
+            TaskKind::Position => with_instructions(level, Rows::<_, 3>(evaluation)),
+            TaskKind::Pose => with_instructions(level, Rows::<_, 6>(evaluation)),
         };
         for (lane, member) in self.members[..self.count].iter().enumerate() {
             let range = member.from..member.from + joints;
@@ -106,39 +111,30 @@ impl<A: LaneArray> Bundle<A> {
             }
         }
     }
-
-    fn evaluation<const M: usize>(&mut self, gain: f64) -> Evaluation<'_, A, M> {
-        Evaluation {
-            chains: &self.chains,
-            scratch: &mut self.scratch,
-            wanted: &self.wanted,
-            velocities: &mut self.velocities,
-            gain,
-        }
-    }
 }
 
-impl<A: LaneArray> Wanted<A> {
-    #[inline]
-    fn set(&mut self, lane: usize, reference: &Reference) {
-        let write = |to: &mut [A], from: &[f64]| {
-            for (to, &from) in to.iter_mut().zip(from) {
-                to.as_mut()[lane] = from;
-            }
-        };
-        write(&mut self.position, reference.position.as_slice());
-        write(self.rotation.as_flattened_mut(), reference.rotation.matrix().as_slice());
-        write(&mut self.twist, reference.twist.as_slice());
-    }
-}
-
-/// Kinematics, task errors and both parts of the joint velocities of all lanes, for tasks of `M` rows.
-struct Evaluation<'a, A, const M: usize> {
+/// Kinematics, task errors and both parts of the joint velocities of all lanes.
+struct Evaluation<'a, A: LaneArray> {
     chains: &'a SideBySide<A>,
     scratch: &'a mut SideBySideScratch<A>,
-    wanted: &'a Wanted<A>,
+    references: &'a A::Of<&'a Reference>,
+    q: &'a A::Of<&'a [f64]>,
     velocities: &'a mut [[A; 2]],
     gain: f64,
+}
+
+/// A number of the reference of each lane.
+#[inline(always)]
+fn gather<S: Simd, A: LaneArray>(
+    simd: S,
+    references: &[&Reference],
+    pick: impl Fn(&Reference) -> f64,
+) -> A::Vector<S> {
+    <A::Vector<S> as Lanes>::gather(
+        simd,
+        #[inline(always)]
+        |lane| pick(references[lane]),
+    )
 }
 
 /// One number for each lane.
@@ -147,31 +143,35 @@ fn load<S: Simd, A: LaneArray>(simd: S, array: &A) -> A::Vector<S> {
     <A::Vector<S> as Lanes>::load(simd, array)
 }
 
-impl<A: LaneArray, const M: usize> Kernel for Evaluation<'_, A, M> {
+/// The same for tasks of `M` rows.
+struct Rows<'a, A: LaneArray, const M: usize>(Evaluation<'a, A>);
+
+impl<A: LaneArray, const M: usize> Kernel for Rows<'_, A, M> {
     type Output = Found<A>;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Found<A> {
-        let tips = self.chains.run(simd, self.scratch);
-        let wanted = self.wanted;
+        let Evaluation { chains, scratch, references, q, velocities, gain } = self.0;
+        let references = references.as_ref();
+        let tips = chains.run(simd, q, scratch);
         let mut rotation = [tips.position; 3];
-        for (column, wanted) in rotation.iter_mut().zip(&wanted.rotation) {
-            *column = [load(simd, &wanted[0]), load(simd, &wanted[1]), load(simd, &wanted[2])];
+        for (j, column) in rotation.iter_mut().enumerate() {
+            for (i, entry) in column.iter_mut().enumerate() {
+                *entry = gather::<S, A>(simd, references, |r| r.rotation.matrix()[(i, j)]);
+            }
         }
-        let position = [
-            load(simd, &wanted.position[0]),
-            load(simd, &wanted.position[1]),
-            load(simd, &wanted.position[2]),
-        ];
+        let mut position = tips.position;
+        for (i, entry) in position.iter_mut().enumerate() {
+            *entry = gather::<S, A>(simd, references, |r| r.position[i]);
+        }
         let error: [_; M] = pose_error((&tips.position, &tips.rotation), (&position, &rotation), simd);
-        let gain = <A::Vector<S> as Lanes>::splat(simd, -self.gain);
+        let gain = <A::Vector<S> as Lanes>::splat(simd, -gain);
         let (mut feedforward, mut feedback) = (error, error);
         for row in 0..M {
-            feedforward[row] = load(simd, &wanted.twist[row]);
+            feedforward[row] = gather::<S, A>(simd, references, |r| r.twist[row]);
             feedback[row] = error[row] * gain;
         }
-        let columns = &self.scratch.columns;
-        let velocities = self.velocities;
+        let columns = &scratch.columns;
         let found = least_norm(
             simd,
             columns.len(),

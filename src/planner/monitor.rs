@@ -74,6 +74,11 @@ impl Deviation {
     }
 }
 
+/// The larger of the two, the first when the second is NaN: one instruction where `f64::max` takes five.
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
 /// What is watched on every sample of one arm: errors, limits, conditioning. Nothing here allocates after `new`.
 #[derive(Clone, Debug)]
 pub(super) struct Monitor {
@@ -147,10 +152,10 @@ impl Monitor {
     }
 
     pub(super) fn observe_error(&mut self, error: &Vector6<f64>, deviation: &Deviation) {
-        self.largest_sum = self.largest_sum.max(deviation.position + deviation.orientation);
-        self.largest.position = self.largest.position.max(deviation.position);
-        self.largest.orientation = self.largest.orientation.max(deviation.orientation);
-        self.max_error_component = error.iter().fold(self.max_error_component, |a, b| a.max(b.abs()));
+        self.largest_sum = larger(self.largest_sum, deviation.position + deviation.orientation);
+        self.largest.position = larger(self.largest.position, deviation.position);
+        self.largest.orientation = larger(self.largest.orientation, deviation.orientation);
+        self.max_error_component = error.iter().fold(self.max_error_component, |a, b| larger(a, b.abs()));
     }
 
     /// The largest norm of the task error.

@@ -14,11 +14,10 @@ pub(super) struct Axis<A> {
     pub(super) origin: [A; 3],
 }
 
-/// The joint positions of a chain in the order of its segments, their sines and their cosines: lane by lane, filled up
-/// with zeros to whole vectors of four.
+/// The sines and cosines of the joint positions of a chain in the order of its segments: lane by lane, filled up to whole
+/// vectors of four.
 #[derive(Debug, Clone)]
 pub(super) struct Motions {
-    pub(super) values: Vec<f64>,
     sines: Vec<f64>,
     cosines: Vec<f64>,
 }
@@ -42,13 +41,13 @@ pub struct Posed<'a> {
 impl Motions {
     pub(super) fn with_length(length: usize) -> Motions {
         let zeros = vec![0.0; length.next_multiple_of(4)];
-        Motions { values: zeros.clone(), sines: zeros.clone(), cosines: zeros }
+        Motions { sines: zeros.clone(), cosines: zeros }
     }
 
-    /// Fills in the sines and cosines of the values.
+    /// Fills in the sines and cosines of the positions that `position` gives by index.
     #[inline(always)]
-    pub(super) fn turn<S: Simd>(&mut self, simd: S) {
-        sines_and_cosines::<f64x4<S>>(simd, &self.values, &mut self.sines, &mut self.cosines);
+    pub(super) fn turn<S: Simd>(&mut self, simd: S, position: impl Fn(usize) -> f64) {
+        sines_and_cosines::<f64x4<S>>(simd, position, &mut self.sines, &mut self.cosines);
     }
 }
 
@@ -96,26 +95,26 @@ impl<V: Lanes> Frame<V> {
     }
 }
 
-/// Runs along the chain, leaves every moving axis in `axes` and returns the tip.
+/// Runs along the chain at the positions that `position` gives by segment, leaves every moving axis in `axes` and returns the tip.
 #[inline(always)]
 pub(super) fn forward<'a, V: Lanes>(
     token: V::Token,
     folded: &Folded<V::Array>,
     motions: &'a Motions,
+    position: impl Fn(usize) -> V,
     axes: &mut [Axis<V::Array>],
 ) -> Frame<V> {
     let mut frame = folded.start.load::<V>(token);
     let lanes = |values: &'a [f64]| values.chunks_exact(V::WIDTH);
     let turns = lanes(&motions.sines).zip(lanes(&motions.cosines));
-    let moves = lanes(&motions.values).zip(turns);
-    for ((segment, axis), (value, (sine, cosine))) in folded.segments.iter().zip(axes).zip(moves) {
+    for (k, ((segment, axis), (sine, cosine))) in folded.segments.iter().zip(axes).zip(turns).enumerate() {
         for i in 0..3 {
             frame.z[i].store(&mut axis.direction[i]);
             frame.p[i].store(&mut axis.origin[i]);
         }
         match segment.motion {
             Motion::Turn => frame.turn_about_z(V::load_slice(token, sine), V::load_slice(token, cosine)),
-            Motion::Shift => frame.shift(frame.z, V::load_slice(token, value)),
+            Motion::Shift => frame.shift(frame.z, position(k)),
         }
         if let Some([sine, cosine]) = &segment.offset {
             frame.turn_about_z(V::load(token, sine), V::load(token, cosine));
@@ -170,7 +169,8 @@ impl ChainScratch {
 
 /// One pass over one chain.
 struct Pass<'a> {
-    folded: &'a Folded<Single>,
+    chain: &'a Chain,
+    q: &'a [f64],
     motions: &'a mut Motions,
     axes: &'a mut [Axis<Single>],
 }
@@ -180,8 +180,11 @@ impl Kernel for Pass<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Frame<f64> {
-        self.motions.turn(simd);
-        forward::<f64>((), self.folded, self.motions, self.axes)
+        let places = &self.chain.places;
+        // The vectors of four may reach beyond the last segment.
+        let position = |k: usize| places.get(k).map_or(0.0, |place| place.multiplier * self.q[place.column]);
+        self.motions.turn(simd, position);
+        forward::<f64>((), &self.chain.folded, self.motions, position, self.axes)
     }
 }
 
@@ -196,10 +199,7 @@ impl Chain {
         if scratch.axes.len() < self.places.len() {
             *scratch = self.scratch();
         }
-        for (value, place) in scratch.motions.values.iter_mut().zip(&self.places) {
-            *value = place.multiplier * q[place.column];
-        }
-        let pass = Pass { folded: &self.folded, motions: &mut scratch.motions, axes: &mut scratch.axes };
+        let pass = Pass { chain: self, q, motions: &mut scratch.motions, axes: &mut scratch.axes };
         scratch.tip = with_instructions(scratch.level, pass);
         Posed { chain: self, scratch }
     }

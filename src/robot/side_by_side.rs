@@ -57,11 +57,18 @@ impl<A: LaneArray> SideBySide<A> {
         }
     }
 
-    /// Runs the kinematics at the positions that [`SideBySideScratch::set_positions`] was given.
+    /// Runs the kinematics at the joint positions of each lane.
     #[inline(always)]
-    pub(crate) fn run<S: Simd>(&self, simd: S, scratch: &mut SideBySideScratch<A>) -> Tips<A::Vector<S>> {
-        scratch.motions.turn(simd);
-        let tip = forward::<A::Vector<S>>(simd, &self.folded, &scratch.motions, &mut scratch.axes);
+    pub(crate) fn run<S: Simd>(
+        &self,
+        simd: S,
+        q: &A::Of<&[f64]>,
+        scratch: &mut SideBySideScratch<A>,
+    ) -> Tips<A::Vector<S>> {
+        let q = q.as_ref();
+        scratch.motions.turn(simd, |i| q[i % A::WIDTH].get(i / A::WIDTH).copied().unwrap_or(0.0));
+        let position = |k: usize| <A::Vector<S> as Lanes>::gather(simd, |lane| q[lane][k]);
+        let tip = forward::<A::Vector<S>>(simd, &self.folded, &scratch.motions, position, &mut scratch.axes);
         let axes = self.folded.segments.iter().zip(&scratch.axes);
         for ((segment, axis), column) in axes.zip(&mut scratch.columns) {
             let twist = twist_of::<A::Vector<S>>(simd, axis, segment.motion, &tip.p);
@@ -70,16 +77,5 @@ impl<A: LaneArray> SideBySide<A> {
             }
         }
         Tips { rotation: [tip.x, tip.y, tip.z], position: tip.p }
-    }
-}
-
-impl<A: LaneArray> SideBySideScratch<A> {
-    /// Puts the joint positions of a chain into its lane.
-    #[inline(always)]
-    pub(crate) fn set_positions(&mut self, lane: usize, q: &[f64]) {
-        let places = self.motions.values.iter_mut().skip(lane).step_by(A::WIDTH);
-        for (value, &position) in places.zip(q) {
-            *value = position;
-        }
     }
 }

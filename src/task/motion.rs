@@ -1,5 +1,6 @@
 use super::{Path, TimeLaw};
-use nalgebra::{IsometryMatrix3, Rotation3, Vector3, Vector6};
+use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3, Vector6};
+use std::sync::Arc;
 
 /// Where a tip shall be at an instant, and how it shall move there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +13,15 @@ pub struct Reference {
     pub twist: Vector6<f64>,
 }
 
+impl Reference {
+    /// Nothing but a value to be overwritten: at rest in the origin, turned by nothing.
+    pub(crate) const REST: Self = Self {
+        position: Vector3::new(0.0, 0.0, 0.0),
+        rotation: Rotation3::from_matrix_unchecked(Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)),
+        twist: Vector6::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    };
+}
+
 /// What a tip shall do in the course of time: a path run through in a given time and laid to where an arm stands,
 /// `p(t) = origin + path(u(t / T))`, `R(t) = turn(u(t / T)) R_0`, or references sampled beforehand.
 pub struct Motion {
@@ -20,7 +30,7 @@ pub struct Motion {
 
 enum Course {
     Curve(Curve),
-    Samples { references: Vec<Reference>, sigma: f64 },
+    Samples { references: Arc<[Reference]>, sigma: f64 },
 }
 
 struct Curve {
@@ -69,13 +79,14 @@ impl Motion {
     }
 
     /// References that were computed or recorded elsewhere, the first at `t = 0` and then every `sigma` \[s\]: sample `n`
-    /// holds around `t = n sigma`, the last one, at rest, ever after.
+    /// holds around `t = n sigma`, the last one, at rest, ever after. Plans can share them.
     ///
     /// Runge-Kutta starters look between the samples; give the first states yourself, or start by `paper` or `ramp`.
     ///
     /// # Panics
     /// When there are no references, or `sigma` is not positive.
-    pub fn sampled(references: Vec<Reference>, sigma: f64) -> Self {
+    pub fn sampled(references: impl Into<Arc<[Reference]>>, sigma: f64) -> Self {
+        let references = references.into();
         assert!(!references.is_empty(), "a sampled motion needs at least one reference");
         assert!(sigma > 0.0, "the sampling gap of a motion must be positive");
         Self { course: Course::Samples { references, sigma } }
@@ -86,13 +97,24 @@ impl Motion {
         match &self.course {
             Course::Curve(curve) => curve.at(t),
             Course::Samples { references, sigma } => {
-                let (place, last) = (t / sigma + 0.5, references.len() - 1);
-                let index = place as usize;
-                let mut reference = references[index.min(last)];
-                if place < 0.0 || index > last {
+                let last = references.len() - 1;
+                let mut reference = references[((t / sigma + 0.5) as usize).min(last)];
+                if self.recorded(t).is_none() {
                     reference.twist = Vector6::zeros();
                 }
                 reference
+            }
+        }
+    }
+
+    /// The reference at time `t` where it lies in memory, if it was sampled beforehand.
+    #[inline]
+    pub(crate) fn recorded(&self, t: f64) -> Option<&Reference> {
+        match &self.course {
+            Course::Curve(_) => None,
+            Course::Samples { references, sigma } => {
+                let place = t / sigma + 0.5;
+                if place < 0.0 { None } else { references.get(place as usize) }
             }
         }
     }
