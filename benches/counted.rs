@@ -2,6 +2,8 @@
 //!
 //! `scripts/performance.py` runs it twice with different counts; the difference is free of everything else.
 
+#![allow(clippy::print_stdout)]
+
 mod work;
 
 use std::hint::black_box;
@@ -10,6 +12,7 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let [name, count] = arguments.as_slice() else {
         // `cargo bench` runs every benchmark without arguments: nothing to count then.
+        println!("works: {}", work::NAMES.join("; "));
         return;
     };
     let count: usize = count.parse().expect("the second argument is a number of repetitions");

@@ -10,7 +10,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 /// One repetition; the result only keeps the compiler from leaving it out.
-pub type Work = Box<dyn FnMut() -> f64>;
+pub(crate) type Work = Box<dyn FnMut() -> f64>;
 
 const ARMS: [(&str, &str, &str, &[f64]); 4] = [
     ("ur5e", "base_link", "tool0", &[0.2, -1.3, 1.7, -1.4, -1.2, 0.4]),
@@ -29,7 +29,7 @@ const STEPS: usize = 20_000;
 const SIGMA: f64 = 1e-3;
 
 /// Every work, in the order in which they are listed.
-pub const NAMES: [&str; 9] = [
+pub(crate) const NAMES: [&str; 9] = [
     "kinematics ur5e",
     "kinematics panda",
     "kinematics iiwa14",
@@ -42,7 +42,7 @@ pub const NAMES: [&str; 9] = [
 ];
 
 /// Returns the work of that name.
-pub fn by_name(name: &str) -> Option<Work> {
+pub(crate) fn by_name(name: &str) -> Option<Work> {
     Some(match name {
         "solve" => solve(),
         "step 1 panda" => steps(1, "la6-wang-guo", 0.4, true),

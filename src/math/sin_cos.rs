@@ -50,7 +50,7 @@ pub(crate) fn sines_and_cosines<V: Lanes>(
             sine.store_slice(sines);
             cosine.store_slice(cosines);
         } else {
-            let angles = (chunk * V::WIDTH..).map(&angle);
+            let angles = (chunk * V::WIDTH..(chunk + 1) * V::WIDTH).map(&angle);
             one_by_one(angles, sines, cosines);
         }
     }

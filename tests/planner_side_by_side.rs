@@ -1,0 +1,108 @@
+//! Arms of one shape are evaluated together in the lanes of registers; nobody can tell from the result.
+
+#![allow(clippy::unwrap_used)]
+
+use kinstep::formula::FormulaTable;
+use kinstep::law::{Demand, Law, Pseudoinverse, Resolution};
+use kinstep::nalgebra::{IsometryMatrix3, Vector3};
+use kinstep::planner::{Arm, Plan, Planner};
+use kinstep::robot::embedded;
+use kinstep::task::{Circle, Motion, Planar, Plane, Quintic, TaskKind};
+
+/// The least-norm law behind a door of its own, so that the planner takes it for something special.
+struct Apart(Pseudoinverse);
+
+impl Law for Apart {
+    fn prepare(&mut self, rows: usize, joints: usize, length: f64) {
+        self.0.prepare(rows, joints, length);
+    }
+
+    fn resolve(&mut self, demand: &Demand<'_>, feedforward: &mut [f64], feedback: &mut [f64]) -> Resolution {
+        self.0.resolve(demand, feedforward, feedback)
+    }
+
+    fn threshold(&self) -> f64 {
+        self.0.threshold()
+    }
+}
+
+const PANDA: (&str, &str, &str, &[f64]) =
+    ("panda", "panda_link0", "panda_link8", &[0.1, -0.4, 0.2, -2.1, 0.3, 1.8, 0.6]);
+const IIWA: (&str, &str, &str, &[f64]) =
+    ("iiwa14", "iiwa_link_0", "iiwa_link_ee", &[0.1, 0.6, 0.2, -1.4, 0.3, 1.1, 0.4]);
+const UR5E: (&str, &str, &str, &[f64]) = ("ur5e", "base_link", "tool0", &[0.2, -1.3, 1.7, -1.4, -1.2, 0.4]);
+const PLANAR: (&str, &str, &str, &[f64]) = ("planar4", "base", "tip", &[0.3, 0.4, 0.5, 0.6]);
+
+fn arm(
+    i: usize,
+    (robot, base, tip, q): (&str, &str, &str, &[f64]),
+    task: TaskKind,
+    radius: f64,
+    apart: bool,
+) -> Arm {
+    let mount =
+        IsometryMatrix3::new(Vector3::new(0.1, 0.7 * i as f64, 0.0), Vector3::new(0.0, 0.1, i as f64));
+    let chain = embedded::get(robot).unwrap().chain(base, tip).unwrap().mounted(&mount);
+    let q: Vec<f64> = q.iter().map(|q| q + 0.01 * i as f64).collect();
+    let start = chain.forward(&q, &mut chain.scratch()).pose();
+    let plane = if task == TaskKind::Pose { Plane::Yz } else { Plane::Xy };
+    let path = Planar::new(Circle { radius }, plane, 0.2 * i as f64, 0.0, 6.0);
+    let motion = Motion::from_pose(path, Quintic, 1.0, &start);
+    let arm = Arm::new(format!("arm {i}"), chain, q, task, motion);
+    if apart { arm.with_law(Apart(Pseudoinverse::new())) } else { arm }
+}
+
+type Robot = (&'static str, &'static str, &'static str, &'static [f64]);
+
+fn plan(robots: &[(Robot, TaskKind)], radius: f64, apart: bool) -> Plan {
+    let formula = FormulaTable::builtin().get("la6-wang-guo").unwrap();
+    let arms = robots.iter().enumerate().map(|(i, &(robot, task))| arm(i, robot, task, radius, apart));
+    Planner::builder().formula(formula).sigma(0.01).duration(1.0).h(0.4).arms(arms).build().unwrap().run()
+}
+
+fn assert_same(together: &Plan, apart: &Plan) {
+    assert_eq!((together.status, &together.reason), (apart.status, &apart.reason));
+    for (a, b) in together.arms.iter().zip(&apart.arms) {
+        assert_eq!(a.positions, b.positions, "{}", a.name);
+        assert_eq!(a.velocities, b.velocities, "{}", a.name);
+        assert_eq!(a.errors, b.errors, "{}", a.name);
+        assert_eq!(a.smallest_singular_value, b.smallest_singular_value, "{}", a.name);
+        assert_eq!(a.damped_samples, b.damped_samples, "{}", a.name);
+    }
+}
+
+#[test]
+fn arms_together_move_as_each_would_apart_to_the_last_bit() {
+    use TaskKind::{Pose, Position, PositionXy};
+    let cases: [&[(Robot, TaskKind)]; 6] = [
+        &[(PANDA, Pose)],
+        &[(PANDA, Pose), (PANDA, Pose)],
+        // Two makers' robots of one shape, and three or five in lanes of four.
+        &[(PANDA, Pose), (IIWA, Pose), (PANDA, Pose)],
+        &[
+            (PANDA, Pose),
+            (UR5E, Pose),
+            (PANDA, Position),
+            (IIWA, Pose),
+            (UR5E, Pose),
+            (PANDA, Pose),
+            (IIWA, Pose),
+        ],
+        &[(PLANAR, PositionXy), (PLANAR, PositionXy), (UR5E, Position), (UR5E, Position)],
+        &[(PANDA, Position), (IIWA, Position), (PANDA, Position), (PANDA, Position), (PANDA, Position)],
+    ];
+    for robots in cases {
+        let together = plan(robots, 0.05, false);
+        assert!(together.is_completed(), "{:?}", together.reason);
+        assert_same(&together, &plan(robots, 0.05, true));
+    }
+}
+
+#[test]
+fn a_lane_that_comes_near_a_singularity_is_resolved_by_its_law() {
+    // The circle is too wide: both arms stretch out, are damped, and stop.
+    let robots = [(PANDA, TaskKind::Pose), (PANDA, TaskKind::Pose)];
+    let (together, apart) = (plan(&robots, 0.45, false), plan(&robots, 0.45, true));
+    assert!(!together.is_completed());
+    assert_same(&together, &apart);
+}
