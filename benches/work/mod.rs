@@ -103,10 +103,8 @@ fn steps(arms: usize, formula: &'static str, h: f64, is_sampled: bool) -> Work {
     let samples: Vec<Arc<[Reference]>> = pandas.iter().map(|(chain, q)| sample(&circle(chain, q))).collect();
     let begin = move || {
         let arms = pandas.iter().zip(&samples).enumerate().map(|(i, ((chain, q), samples))| {
-            let motion = match is_sampled {
-                true => Motion::sampled(Arc::clone(samples), SIGMA),
-                false => circle(chain, q),
-            };
+            let motion =
+                if is_sampled { Motion::sampled(Arc::clone(samples), SIGMA) } else { circle(chain, q) };
             Arm::new(format!("arm {i}"), chain.clone(), q.to_vec(), TaskKind::Pose, motion)
         });
         let builder = Planner::builder().formula(formula).sigma(SIGMA).duration(STEPS as f64 * SIGMA).h(h);

@@ -56,6 +56,7 @@ macro_rules! rows {
         rows!($m, $i, $body; 0 1 2 3 4 5 6 7 8 9 10 11)
     };
     ($m:ident, $i:ident, $body:expr; $($index:literal)*) => {$(
+        #[allow(clippy::absurd_extreme_comparisons, clippy::reversed_empty_ranges, reason = "the first index is 0")]
         if $index < $m {
             const $i: usize = $index;
             $body;

@@ -146,7 +146,7 @@ impl<A: LaneArray> Folded<A> {
             let lanes: Vec<&Segment<Single>> = chains.iter().map(|chain| &chain.segments[i]).collect();
             Segment {
                 motion: lanes[0].motion,
-                offset: turns(lanes.iter().map(|lane| lane.offset)),
+                offset: turns(&lanes.iter().map(|lane| lane.offset).collect::<Vec<_>>()),
                 translation: std::array::from_fn(|k| gather(lanes.iter().map(|lane| lane.translation[k][0]))),
                 is_shifted: std::array::from_fn(|k| lanes.iter().any(|lane| lane.is_shifted[k])),
                 twist: twists(&lanes),
@@ -157,7 +157,7 @@ impl<A: LaneArray> Folded<A> {
         };
         let start =
             Frame { x: column(|f| &f.x), y: column(|f| &f.y), z: column(|f| &f.z), p: column(|f| &f.p) };
-        let finish = turns(chains.iter().map(|chain| chain.finish));
+        let finish = turns(&chains.iter().map(|chain| chain.finish).collect::<Vec<_>>());
         Some(Self { start, segments: segments.collect(), finish })
     }
 }
@@ -175,9 +175,9 @@ fn gather<A: LaneArray>(reals: impl Iterator<Item = f64>) -> A {
 }
 
 /// The turns of all lanes, if any lane turns.
-fn turns<A: LaneArray>(lanes: impl Iterator<Item = Option<[Single; 2]>> + Clone) -> Option<[A; 2]> {
-    let at = |k: usize| gather(lanes.clone().map(|turn| turn.map_or([0.0, 1.0][k], |turn| turn[k][0])));
-    lanes.clone().any(|turn| turn.is_some()).then(|| [at(0), at(1)])
+fn turns<A: LaneArray>(lanes: &[Option<[Single; 2]>]) -> Option<[A; 2]> {
+    let at = |k: usize| gather(lanes.iter().map(|turn| turn.map_or([0.0, 1.0][k], |turn| turn[k][0])));
+    lanes.iter().any(Option::is_some).then(|| [at(0), at(1)])
 }
 
 fn twists<A: LaneArray>(lanes: &[&Segment<Single>]) -> Twist<A> {
