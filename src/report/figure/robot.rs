@@ -10,6 +10,8 @@ use crate::robot::{Joint, JointKind, Robot};
 /// Half the length of a drawn axis, and how thick a robot may be that lies in a plane, in sizes of the robot.
 const AXIS: f64 = 0.045;
 const THIN: f64 = 0.02;
+/// Most joints that are numbered: beyond, nobody could tell them apart.
+const MOST_NUMBERED: usize = 60;
 
 /// Colours and dashes of what turns, slides, or moves in several directions.
 const TURNS: usize = 1;
@@ -152,6 +154,7 @@ impl<'r> Scene<'r> {
     }
 
     fn joints(&self, view: &View) -> Vec<Mark> {
+        let named = self.has_numbers();
         let mark = |(number, joint): (usize, &Joint)| {
             let (shape, style) = match joint.kind {
                 JointKind::Revolute | JointKind::Continuous => (Shape::Circle, TURNS),
@@ -159,7 +162,8 @@ impl<'r> Scene<'r> {
                 _ => (Shape::Diamond, FREE),
             };
             let points = vec![view.at(&self.place(joint.child))];
-            Mark::Points { name: format!("{number}  {}", joint.name), points, shape, style }
+            let name = if named { format!("{number}  {}", joint.name) } else { joint.kind.to_string() };
+            Mark::Points { name, points, shape, style }
         };
         self.numbered().map(mark).collect()
     }
@@ -177,23 +181,37 @@ impl<'r> Scene<'r> {
         ]
     }
 
+    /// Whether the joints are few enough to be told apart by numbers.
+    fn has_numbers(&self) -> bool {
+        self.numbered().count() <= MOST_NUMBERED
+    }
+
     /// The numbers of the joints, on a drawing of `scale` pixels a metre; those that would overlap stand together.
     fn numbers(&self, view: &View, scale: f64) -> Vec<Mark> {
-        let mut places: Vec<((f64, f64), Vec<usize>)> = Vec::new();
-        for (number, joint) in self.numbered() {
-            let at = view.at(&self.place(joint.child));
-            let overlaps = |place: &(f64, f64), numbers: &[usize]| {
-                let (across, up) = ((at.0 - place.0) * scale, (at.1 - place.1) * scale);
-                let wide = |text: &str| text_width(text, FONT_SIZE) + 4.0;
-                up.abs() < FONT_SIZE && -wide(&number.to_string()) < across && across < wide(&runs(numbers))
-            };
-            match places.iter_mut().find(|(place, numbers)| overlaps(place, numbers)) {
-                Some((_, numbers)) => numbers.push(number),
-                None => places.push((at, vec![number])),
-            }
+        let place = |(number, joint): (usize, &Joint)| (view.at(&self.place(joint.child)), vec![number]);
+        let mut labels: Vec<Numbers> = self.numbered().filter(|_| self.has_numbers()).map(place).collect();
+        while let Some((first, second)) = overlapping(&labels, scale) {
+            let (_, numbers) = labels.remove(second);
+            labels[first].1.extend(numbers);
+            labels[first].1.sort_unstable();
         }
-        places.into_iter().map(|(at, numbers)| Mark::Label { text: runs(&numbers), at }).collect()
+        labels.into_iter().map(|(at, numbers)| Mark::Label { text: runs(&numbers), at }).collect()
     }
+}
+
+/// Numbers that stand together, and where.
+type Numbers = ((f64, f64), Vec<usize>);
+
+/// Returns the first two labels that would be drawn over each other.
+fn overlapping(labels: &[Numbers], scale: f64) -> Option<(usize, usize)> {
+    let wide = |numbers: &[usize]| text_width(&runs(numbers), FONT_SIZE) + 4.0;
+    let overlap = |(at, own): &Numbers, (other, numbers): &Numbers| {
+        let (across, up) = ((other.0 - at.0) * scale, (other.1 - at.1) * scale);
+        up.abs() < FONT_SIZE && -wide(numbers) < across && across < wide(own)
+    };
+    let pairs =
+        (0..labels.len()).flat_map(|first| (first + 1..labels.len()).map(move |second| (first, second)));
+    pairs.into_iter().find(|&(first, second)| overlap(&labels[first], &labels[second]))
 }
 
 /// Returns rising numbers with runs of them drawn together: `1, 3\u{2013}5`.
@@ -237,7 +255,7 @@ fn points_of(mark: &Mark) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::embedded;
+    use crate::robot::{DhTable, embedded};
 
     #[test]
     fn a_flat_robot_is_drawn_once_and_another_four_times() {
@@ -259,6 +277,14 @@ mod tests {
             assert!(csv.lines().any(|found| found == line), "{line}:\n{csv}");
         }
         assert!(figure.to_svg().contains("4  j4"));
+    }
+
+    #[test]
+    fn a_robot_of_very_many_joints_is_drawn_without_numbers() {
+        let robot = Robot::from_dh(&DhTable::planar("snake", &[0.1; 500])).unwrap();
+        let figure = &robot_figures(&robot, &[])[0];
+        assert!(figure.marks.iter().all(|mark| !matches!(mark, Mark::Label { .. })));
+        assert_eq!(figure.to_svg().matches("continuous").count(), 1, "one entry of the legend");
     }
 
     #[test]
