@@ -5,6 +5,7 @@
 // Cholesky (LDLT) solve of the normal equations and combination of the history. It watches no limits and no errors,
 // and its path is computed beforehand.
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,15 +13,17 @@
 #include <pinocchio/algorithm/jacobian.hpp>
 #include <pinocchio/algorithm/joint-configuration.hpp>
 #include <pinocchio/algorithm/kinematics.hpp>
+#include <pinocchio/algorithm/model.hpp>
 #include <pinocchio/parsers/urdf.hpp>
-#include <pinocchio/spatial/explog.hpp>
+#include <pinocchio/spatial.hpp>
 #include <string>
 #include <vector>
 
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+// Static sizes, so that the peer is as quick as it can be.
+using Jacobian = Eigen::Matrix<double, 6, 7>;
 
 namespace {
 
@@ -39,14 +42,13 @@ struct Arm {
     pinocchio::Data data;
     pinocchio::FrameIndex tip;
     std::vector<Reference> path;
-    Eigen::VectorXd q, f, g;
-    std::vector<Eigen::VectorXd> states;
+    Vector7 q, f, g;
+    std::vector<Vector7> states;
     Jacobian jacobian;
     int newest = 0, n = 0;
 
-    Arm(const pinocchio::Model& model, pinocchio::FrameIndex tip, const Eigen::VectorXd& q0)
-        : model(model), data(model), tip(tip), q(q0), f(q0.size()), g(q0.size()), states(6, q0),
-          jacobian(6, q0.size()) {
+    Arm(const pinocchio::Model& model, pinocchio::FrameIndex tip, const Vector7& q0)
+        : model(model), data(model), tip(tip), q(q0), states(6, q0) {
         pinocchio::framesForwardKinematics(model, data, q);
         const auto start = data.oMf[tip];
         for (int k = 0; k <= STEPS; ++k) {
@@ -74,7 +76,7 @@ struct Arm {
         error.tail<3>() = pinocchio::log3(Eigen::Matrix3d(pose.rotation() * wanted.rotation.transpose()));
         // gamma sums to 2 in this row: h = sigma k gamma(1).
         const double gain = H / (SIGMA * 2.0);
-        const Matrix6 gram = jacobian * jacobian.transpose();
+        const Matrix6 gram = jacobian.lazyProduct(jacobian.transpose());
         const Eigen::LDLT<Matrix6> factor(gram);
         Eigen::Matrix<double, 6, 2> wishes, solved;
         wishes.col(0) = wanted.twist;
@@ -83,9 +85,9 @@ struct Arm {
         f.noalias() = jacobian.transpose() * solved.col(0);
         g.noalias() = jacobian.transpose() * solved.col(1);
         // The row solved for its newest state.
-        const auto& at = [&](int age) -> const Eigen::VectorXd& { return states[(newest + age) % 6]; };
+        const auto& at = [&](int age) -> const Vector7& { return states[(newest + age) % 6]; };
         newest = (newest + 5) % 6;
-        Eigen::VectorXd& next = states[newest];
+        Vector7& next = states[newest];
         next = (5.0 / 24) * at(1) + (12.0 / 24) * at(2) + (6.0 / 24) * at(3) + (4.0 / 24) * at(4) - (3.0 / 24) * at(5) +
                2.0 * SIGMA * (f + g);
         q = next;
@@ -99,15 +101,22 @@ int main(int argc, char** argv) {
     if (argc != 4) return std::fprintf(stderr, "usage: pinocchio URDF NAME COUNT\n"), 2;
     const std::string name = argv[2];
     const int count = std::atoi(argv[3]);
-    pinocchio::Model model;
-    pinocchio::urdf::buildModel(argv[1], model);
-    const auto tip = model.nframes > 0 ? model.getFrameId("panda_link8") : 0;
-    Eigen::VectorXd q(model.nq);
+    pinocchio::Model whole, model;
+    pinocchio::urdf::buildModel(argv[1], whole);
+    // Joints that do not move the tip are left out, as a chain leaves them out.
+    const auto& path = whole.supports[whole.frames[whole.getFrameId("panda_link8")].parentJoint];
+    std::vector<pinocchio::JointIndex> others;
+    for (pinocchio::JointIndex joint = 1; joint < pinocchio::JointIndex(whole.njoints); ++joint)
+        if (std::find(path.begin(), path.end(), joint) == path.end()) others.push_back(joint);
+    pinocchio::buildReducedModel(whole, others, pinocchio::neutral(whole), model);
+    const auto tip = model.getFrameId("panda_link8");
+    Vector7 q;
+    if (model.nq != 7) return std::fprintf(stderr, "expected an arm of 7 joints, found %d\n", model.nq), 1;
     q << 0.1, -0.4, 0.2, -2.1, 0.3, 1.8, 0.6;
     double sum = 0;
     if (name == "kinematics panda") {
         pinocchio::Data data(model);
-        Jacobian jacobian(6, model.nv);
+        Jacobian jacobian;
         for (int i = 0; i < count; ++i) {
             q[0] += 1e-9;
             pinocchio::computeJointJacobians(model, data, q);
