@@ -5,7 +5,7 @@
 use kinstep::formula::FormulaTable;
 use kinstep::law::{Demand, Law, Pseudoinverse, Resolution};
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
-use kinstep::planner::{Arm, Plan, Planner};
+use kinstep::planner::{Arm, Plan, Planner, run_together};
 use kinstep::robot::embedded;
 use kinstep::task::{Circle, Motion, Planar, Plane, Quintic, TaskKind};
 
@@ -54,10 +54,14 @@ fn arm(
 
 type Robot = (&'static str, &'static str, &'static str, &'static [f64]);
 
-fn plan(robots: &[(Robot, TaskKind)], radius: f64, apart: bool) -> Plan {
-    let formula = FormulaTable::builtin().get("la6-wang-guo").unwrap();
+fn planner(formula: &str, gain: f64, robots: &[(Robot, TaskKind)], radius: f64, apart: bool) -> Planner {
+    let formula = FormulaTable::builtin().get(formula).unwrap();
     let arms = robots.iter().enumerate().map(|(i, &(robot, task))| arm(i, robot, task, radius, apart));
-    Planner::builder().formula(formula).sigma(0.01).duration(1.0).h(0.4).arms(arms).build().unwrap().run()
+    Planner::builder().formula(formula).sigma(0.01).duration(1.0).gain(gain).arms(arms).build().unwrap()
+}
+
+fn plan(robots: &[(Robot, TaskKind)], radius: f64, apart: bool) -> Plan {
+    planner("la6-wang-guo", 20.0, robots, radius, apart).run()
 }
 
 fn assert_same(together: &Plan, apart: &Plan) {
@@ -105,4 +109,36 @@ fn a_lane_that_comes_near_a_singularity_is_resolved_by_its_law() {
     let (together, apart) = (plan(&robots, 0.45, false), plan(&robots, 0.45, true));
     assert!(!together.is_completed());
     assert_same(&together, &apart);
+}
+
+#[test]
+fn plans_together_are_the_plans_one_by_one_to_the_last_bit() {
+    use TaskKind::{Pose, Position};
+    let dual: &[(Robot, TaskKind)] = &[(PANDA, Pose), (IIWA, Pose)];
+    let (single, six): (&[_], &[_]) = (&[(PANDA, Position)], &[(UR5E, Position)]);
+    // Plans of several kinds in disorder, six of them alike; one loses its path while its neighbours go on.
+    let cases = [
+        ("la6-wang-guo", 20.0, dual, 0.05),
+        ("split-ab5", 20.0, single, 0.04),
+        ("la6-wide", 20.0, dual, 0.03),
+        ("la6-wang-guo", 20.0, dual, 0.45),
+        ("la6-wang-guo", 25.0, dual, 0.05),
+        ("la6-wang-guo", 20.0, six, 0.05),
+        ("la2-euler", 20.0, dual, 0.02),
+        ("split-ab6", 20.0, dual, 0.06),
+        ("split-ab6", 20.0, dual, 0.01),
+        ("la6-wang-guo", 20.0, single, 0.05),
+    ];
+    let make = |&(formula, gain, robots, radius): &(&str, f64, &[_], f64)| {
+        planner(formula, gain, robots, radius, false)
+    };
+    let together = run_together(cases.iter().map(make).collect());
+    assert_eq!(together.len(), cases.len());
+    assert!(!together[3].is_completed() && together[2].is_completed());
+    for (together, case) in together.iter().zip(&cases) {
+        let alone = make(case).run();
+        assert_eq!(together.formula, alone.formula);
+        assert_same(together, &alone);
+    }
+    assert!(run_together(Vec::new()).is_empty());
 }

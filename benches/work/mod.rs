@@ -3,7 +3,7 @@
 use kinstep::formula::FormulaTable;
 use kinstep::math::GramCholesky;
 use kinstep::nalgebra::{IsometryMatrix3, Vector3, Vector6};
-use kinstep::planner::{Arm, Planner, Start};
+use kinstep::planner::{Arm, Plan, Planner, Start, run_together};
 use kinstep::robot::{Chain, embedded};
 use kinstep::task::{Circle, Motion, Planar, Reference, Sin2, TaskKind};
 use std::hint::black_box;
@@ -29,7 +29,7 @@ const STEPS: usize = 20_000;
 const SIGMA: f64 = 1e-3;
 
 /// Every work, in the order in which they are listed.
-pub(crate) const NAMES: [&str; 9] = [
+pub(crate) const NAMES: [&str; 11] = [
     "kinematics ur5e",
     "kinematics panda",
     "kinematics iiwa14",
@@ -39,6 +39,8 @@ pub(crate) const NAMES: [&str; 9] = [
     "step 2 pandas",
     "step 2 pandas, path computed",
     "step 2 pandas, split-ab6",
+    "4 plans, one by one",
+    "4 plans, together",
 ];
 
 /// Returns the work of that name.
@@ -49,6 +51,8 @@ pub(crate) fn by_name(name: &str) -> Option<Work> {
         "step 2 pandas" => steps(2, "la6-wang-guo", 0.4, true),
         "step 2 pandas, path computed" => steps(2, "la6-wang-guo", 0.4, false),
         "step 2 pandas, split-ab6" => steps(2, "split-ab6", 1.0, true),
+        "4 plans, one by one" => plans(|planners| planners.into_iter().map(Planner::run).collect()),
+        "4 plans, together" => plans(run_together),
         _ => kinematics(name.strip_prefix("kinematics ")?),
     })
 }
@@ -90,26 +94,38 @@ fn panda(side: f64) -> (Chain, &'static [f64]) {
 }
 
 /// A circle from where the arm stands.
-fn circle(chain: &Chain, q: &[f64]) -> Motion {
+fn circle(chain: &Chain, q: &[f64], steps: usize) -> Motion {
     let start = chain.forward(q, &mut chain.scratch()).pose();
-    Motion::from_pose(Planar::whole(Circle { radius: 0.05 }), Sin2, STEPS as f64 * SIGMA, &start)
+    Motion::from_pose(Planar::whole(Circle { radius: 0.05 }), Sin2, steps as f64 * SIGMA, &start)
 }
 
-/// One step of Pandas on full-pose paths: kinematics, Jacobians, errors, solves, checks and history.
-fn steps(arms: usize, formula: &'static str, h: f64, is_sampled: bool) -> Work {
+/// Makes planners of Pandas on full-pose circles.
+fn pandas(
+    arms: usize,
+    formula: &'static str,
+    h: f64,
+    steps: usize,
+    is_sampled: bool,
+) -> impl Fn() -> Planner {
     let formula = FormulaTable::builtin().get(formula).expect("a row of the built-in table");
     let pandas: Vec<_> = (0..arms).map(|i| panda(0.5 * i as f64)).collect();
-    let sample = |motion: &Motion| (0..=STEPS).map(|n| motion.at(n as f64 * SIGMA)).collect();
-    let samples: Vec<Arc<[Reference]>> = pandas.iter().map(|(chain, q)| sample(&circle(chain, q))).collect();
-    let begin = move || {
+    let sample = |motion: &Motion| (0..=steps).map(|n| motion.at(n as f64 * SIGMA)).collect();
+    let samples: Vec<Arc<[Reference]>> =
+        pandas.iter().map(|(chain, q)| sample(&circle(chain, q, steps))).collect();
+    move || {
         let arms = pandas.iter().zip(&samples).enumerate().map(|(i, ((chain, q), samples))| {
-            let motion =
-                if is_sampled { Motion::sampled(Arc::clone(samples), SIGMA) } else { circle(chain, q) };
+            let sampled = || Motion::sampled(Arc::clone(samples), SIGMA);
+            let motion = if is_sampled { sampled() } else { circle(chain, q, steps) };
             Arm::new(format!("arm {i}"), chain.clone(), q.to_vec(), TaskKind::Pose, motion)
         });
-        let builder = Planner::builder().formula(formula).sigma(SIGMA).duration(STEPS as f64 * SIGMA).h(h);
+        let builder = Planner::builder().formula(formula).sigma(SIGMA).duration(steps as f64 * SIGMA).h(h);
         builder.start(Start::Paper).arms(arms).build().expect("a plan within range")
-    };
+    }
+}
+
+/// One step: kinematics, Jacobians, errors, solves, checks and history.
+fn steps(arms: usize, formula: &'static str, h: f64, is_sampled: bool) -> Work {
+    let begin = pandas(arms, formula, h, STEPS, is_sampled);
     let mut running = begin();
     Box::new(move || {
         if running.is_finished() {
@@ -118,4 +134,10 @@ fn steps(arms: usize, formula: &'static str, h: f64, is_sampled: bool) -> Work {
         running.step();
         running.arm(0).positions[0]
     })
+}
+
+/// Four plans of two arms and 2,000 steps, made, run and recorded: 8,000 steps.
+fn plans(run: fn(Vec<Planner>) -> Vec<Plan>) -> Work {
+    let begin = pandas(2, "la6-wang-guo", 0.4, 2000, true);
+    Box::new(move || run((0..4).map(|_| begin()).collect())[3].arms[1].max_error)
 }

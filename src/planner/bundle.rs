@@ -1,5 +1,6 @@
 //! Arms that move in the same way, evaluated together: one in each lane.
 
+use super::Arm;
 use super::field::ArmRuntime;
 use crate::law::{Resolution, least_norm};
 use crate::math::{Kernel, LaneArray, Lanes, with_instructions};
@@ -10,105 +11,97 @@ use nalgebra::Vector6;
 
 /// Up to `A::WIDTH` arms with chains of one shape, tasks of one kind and the plain least-norm law.
 pub(super) struct Bundle<A: LaneArray> {
-    /// The arms by index, each with the place of its first joint in the state; repeated to fill all lanes.
-    members: Vec<Member>,
-    /// How many of them are not repetitions.
-    count: usize,
     task: TaskKind,
     chains: SideBySide<A>,
     scratch: SideBySideScratch<A>,
-    velocities: Vec<[A; 2]>,
     /// The references that were not recorded beforehand.
     computed: A::Of<Reference>,
-}
-
-/// One arm of a bundle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Member {
-    pub(super) arm: usize,
-    /// Index of its first joint in the state.
-    pub(super) from: usize,
+    found: Found<A>,
+    velocities: Vec<[A; 2]>,
 }
 
 /// What an evaluation found in all lanes.
+#[derive(Clone, Copy)]
 struct Found<A> {
     error: [A; 6],
     bound: A,
     smallest_pivot: A,
 }
 
+/// An arm and where it is evaluated.
+pub(super) type Lane<'a> = (&'a Arm, &'a [f64]);
+
 impl<A: LaneArray> Bundle<A> {
     /// `None` unless the arms are alike enough; see [`Bundle`].
-    pub(super) fn new(arms: &[ArmRuntime], members: &[Member]) -> Option<Self> {
-        let own = |member: &Member| &arms[member.arm].arm;
-        let task = own(members.first()?).task;
-        let fits =
-            |member: &Member| own(member).task == task && own(member).law.least_norm_threshold().is_some();
-        if !members.iter().all(fits) {
+    pub(super) fn new(arms: &[&Arm]) -> Option<Self> {
+        let task = arms.first()?.task;
+        let fits = |arm: &&Arm| arm.task == task && arm.law.least_norm_threshold().is_some();
+        if !arms.iter().all(fits) {
             return None;
         }
-        let chains: Vec<_> = members.iter().map(|member| &own(member).chain).collect();
+        let chains: Vec<_> = arms.iter().map(|arm| &arm.chain).collect();
         let chains = SideBySide::<A>::new(&chains)?;
-        let last = *members.last()?;
-        let lanes = members.iter().copied().chain(std::iter::repeat(last)).take(A::WIDTH);
         Some(Self {
-            count: members.len(),
-            members: lanes.collect(),
             task,
             scratch: chains.scratch(),
-            velocities: vec![[A::ZERO; 2]; chains.dof()],
             computed: A::each(|_| Reference::REST),
+            found: Found { error: [A::ZERO; 6], bound: A::ZERO, smallest_pivot: A::ZERO },
+            velocities: vec![[A::ZERO; 2]; chains.dof()],
             chains,
         })
     }
 
-    /// The same as [`ArmRuntime::evaluate`] for every member, to the last bit.
-    pub(super) fn evaluate(
+    /// Evaluates the arms of all lanes; the answers are [delivered](Self::deliver) one by one.
+    pub(super) fn evaluate<'a>(
         &mut self,
         level: Level,
-        arms: &mut [ArmRuntime],
         (t, gain): (f64, f64),
-        x: &[f64],
-        [f, g]: [&mut [f64]; 2],
+        lane: impl Fn(usize) -> Lane<'a>,
     ) {
-        let joints = self.chains.dof();
-        let motion = |member: &Member| &arms[member.arm].arm.motion;
-        for (lane, member) in self.members.iter().enumerate() {
-            if motion(member).recorded(t).is_none() {
-                self.computed.as_mut()[lane] = motion(member).at(t);
+        let lanes = A::each(lane);
+        let lanes = lanes.as_ref();
+        for (computed, (arm, _)) in self.computed.as_mut().iter_mut().zip(lanes) {
+            if arm.motion.recorded(t).is_none() {
+                *computed = arm.motion.at(t);
             }
         }
         let computed = self.computed.as_ref();
-        let references = A::each(|lane| motion(&self.members[lane]).recorded(t).unwrap_or(&computed[lane]));
-        let q = A::each(|lane| &x[self.members[lane].from..][..joints]);
+        let references = A::each(|lane| lanes[lane].0.motion.recorded(t).unwrap_or(&computed[lane]));
         let evaluation = Evaluation {
             chains: &self.chains,
             scratch: &mut self.scratch,
             references: &references,
-            q: &q,
+            q: &A::each(|lane| lanes[lane].1),
             velocities: &mut self.velocities,
             gain,
         };
-        let found = match self.task {
+        self.found = match self.task {
             TaskKind::PositionXy => with_instructions(level, Rows::<_, 2>(evaluation)),
             TaskKind::Position => with_instructions(level, Rows::<_, 3>(evaluation)),
             TaskKind::Pose => with_instructions(level, Rows::<_, 6>(evaluation)),
         };
-        for (lane, member) in self.members[..self.count].iter().enumerate() {
-            let range = member.from..member.from + joints;
-            let (f, g) = (&mut f[range.clone()], &mut g[range.clone()]);
-            let runtime = &mut arms[member.arm];
-            let bound = found.bound.as_ref()[lane];
-            let threshold = runtime.arm.law.threshold();
-            if !(found.smallest_pivot.as_ref()[lane] > 0.0 && bound > threshold) {
-                runtime.evaluate(t, gain, &x[range], f, g);
-                continue;
-            }
-            runtime.error = Vector6::from_fn(|row, _| found.error[row].as_ref()[lane]);
-            runtime.resolution = Resolution { smallest_singular_value: bound, damped: false };
-            for ((velocity, f), g) in self.velocities.iter().zip(f).zip(g) {
-                (*f, *g) = (velocity[0].as_ref()[lane], velocity[1].as_ref()[lane]);
-            }
+    }
+
+    /// Gives the arm of a lane its answer: the same as [`ArmRuntime::evaluate`], to the last bit. A lane that may be near a
+    /// singularity is left to that.
+    pub(super) fn deliver(
+        &self,
+        lane: usize,
+        runtime: &mut ArmRuntime,
+        (t, gain): (f64, f64),
+        q: &[f64],
+        [f, g]: [&mut [f64]; 2],
+    ) {
+        let found = &self.found;
+        let bound = found.bound.as_ref()[lane];
+        if !(found.smallest_pivot.as_ref()[lane] > 0.0 && bound > runtime.arm.law.threshold()) {
+            runtime.evaluate(t, gain, q, f, g);
+            return;
+        }
+        runtime.error = Vector6::from_fn(|row, _| found.error[row].as_ref()[lane]);
+        runtime.resolution = Resolution { smallest_singular_value: bound, damped: false };
+        for ((velocity, f), g) in self.velocities.iter().zip(f).zip(g) {
+            (*f, *g) = (velocity[0].as_ref()[lane], velocity[1].as_ref()[lane]);
         }
     }
 }

@@ -1,8 +1,9 @@
 use super::Arm;
-use super::bundle::{Bundle, Member};
+use super::bundle::Bundle;
 use super::shared::{self, SharedArms};
 use crate::integrate::{Field, Parts};
 use crate::law::{Demand, Resolution};
+use crate::math::LaneArray;
 use crate::robot::ChainScratch;
 use fearless_simd::Level;
 use nalgebra::Vector6;
@@ -84,10 +85,24 @@ enum Place {
     Shared { set: usize, member: usize },
 }
 
-/// How arms that share no joints are evaluated.
-enum Group {
-    /// By itself: its law or its chain is of no common kind.
-    Alone(Member),
+/// An arm that shares no joints.
+#[derive(Clone, Copy, Debug)]
+struct Member {
+    arm: usize,
+    /// Index of its first joint in the state.
+    from: usize,
+}
+
+/// Arms that share no joints and are evaluated together.
+struct Group {
+    members: Vec<Member>,
+    lanes: Lanes,
+}
+
+/// How the arms of a group are evaluated.
+enum Lanes {
+    /// A single arm whose law or chain is of no common kind.
+    None,
     /// Side by side.
     Two(Box<Bundle<[f64; 2]>>),
     Four(Box<Bundle<[f64; 4]>>),
@@ -168,23 +183,71 @@ impl SynchronousField {
     }
 }
 
-/// Puts arms that fit together into bundles, in the order of their first members.
+/// Puts arms that fit together into groups, in the order of their first members.
 fn grouped(arms: &[ArmRuntime], mut rest: Vec<Member>) -> Vec<Group> {
+    let own = |members: &[Member]| members.iter().map(|member| &arms[member.arm].arm).collect::<Vec<_>>();
     let mut groups = Vec::new();
     while let Some(&first) = rest.first() {
-        let mut bundle = vec![first];
+        let mut members = vec![first];
         for &member in &rest[1..] {
-            bundle.push(member);
-            if Bundle::<[f64; 4]>::new(arms, &bundle).is_none() {
-                bundle.pop();
+            members.push(member);
+            if Bundle::<[f64; 4]>::new(&own(&members)).is_none() {
+                members.pop();
             }
         }
-        rest.retain(|member| bundle.iter().all(|taken| taken.arm != member.arm));
-        let two = || Bundle::new(arms, &bundle).map(|bundle| Group::Two(Box::new(bundle)));
-        let four = || Bundle::new(arms, &bundle).map(|bundle| Group::Four(Box::new(bundle)));
-        groups.push(two().or_else(four).unwrap_or(Group::Alone(first)));
+        rest.retain(|member| members.iter().all(|taken| taken.arm != member.arm));
+        let two = || Bundle::new(&own(&members)).map(|bundle| Lanes::Two(Box::new(bundle)));
+        let four = || Bundle::new(&own(&members)).map(|bundle| Lanes::Four(Box::new(bundle)));
+        let lanes = two().or_else(four).unwrap_or(Lanes::None);
+        groups.push(Group { members, lanes });
     }
     groups
+}
+
+impl Group {
+    fn evaluate(
+        &mut self,
+        level: Level,
+        arms: &mut [ArmRuntime],
+        at: (f64, f64),
+        x: &[f64],
+        out: [&mut [f64]; 2],
+    ) {
+        let members = &self.members;
+        match &mut self.lanes {
+            Lanes::None => {
+                let Member { arm, from } = members[0];
+                let range = from..from + arms[arm].arm.chain.dof();
+                let [f, g] = out;
+                let (f, g) = (&mut f[range.clone()], &mut g[range.clone()]);
+                arms[arm].evaluate(at.0, at.1, &x[range], f, g);
+            }
+            Lanes::Two(bundle) => evaluate_bundle(bundle, members, level, arms, at, x, out),
+            Lanes::Four(bundle) => evaluate_bundle(bundle, members, level, arms, at, x, out),
+        }
+    }
+}
+
+fn evaluate_bundle<A: LaneArray>(
+    bundle: &mut Bundle<A>,
+    members: &[Member],
+    level: Level,
+    arms: &mut [ArmRuntime],
+    at: (f64, f64),
+    x: &[f64],
+    [f, g]: [&mut [f64]; 2],
+) {
+    // The last arm fills the lanes that are left.
+    let joints = arms[members[0].arm].arm.chain.dof();
+    bundle.evaluate(level, at, |lane| {
+        let member = members[lane.min(members.len() - 1)];
+        (&arms[member.arm].arm, &x[member.from..member.from + joints])
+    });
+    for (lane, member) in members.iter().enumerate() {
+        let range = member.from..member.from + joints;
+        let out = [&mut f[range.clone()], &mut g[range.clone()]];
+        bundle.deliver(lane, &mut arms[member.arm], at, &x[range], out);
+    }
 }
 
 impl Field<f64> for SynchronousField {
@@ -198,19 +261,7 @@ impl Field<f64> for SynchronousField {
 
     fn evaluate(&mut self, t: f64, x: &[f64], f: &mut [f64], g: &mut [f64]) {
         for group in &mut self.groups {
-            match group {
-                Group::Alone(member) => {
-                    let runtime = &mut self.arms[member.arm];
-                    let range = member.from..member.from + runtime.arm.chain.dof();
-                    runtime.evaluate(t, self.gain, &x[range.clone()], &mut f[range.clone()], &mut g[range]);
-                }
-                Group::Two(bundle) => {
-                    bundle.evaluate(self.level, &mut self.arms, (t, self.gain), x, [&mut *f, &mut *g]);
-                }
-                Group::Four(bundle) => {
-                    bundle.evaluate(self.level, &mut self.arms, (t, self.gain), x, [&mut *f, &mut *g]);
-                }
-            }
+            group.evaluate(self.level, &mut self.arms, (t, self.gain), x, [&mut *f, &mut *g]);
         }
         for shared in &mut self.shared {
             shared.evaluate(&mut self.arms, (t, self.gain), x, [&mut *f, &mut *g]);

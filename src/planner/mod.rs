@@ -10,6 +10,7 @@ mod monitor;
 mod plan;
 mod run;
 mod shared;
+mod together;
 
 pub use arm::Arm;
 pub use builder::{Feedback, PlannerBuilder, Start};
@@ -17,3 +18,4 @@ pub use error::PlannerError;
 pub use monitor::{LimitKind, Violation};
 pub use plan::{ArmPlan, Plan, PlanStatus, SharedJoints};
 pub use run::{ArmState, Planner, Stop};
+pub use together::run_together;

@@ -2,7 +2,7 @@ use super::diagnosis;
 use super::field::{ArmRuntime, SynchronousField};
 use super::monitor::{Deviation, Monitor};
 use super::{ArmPlan, Plan, PlanStatus, PlannerBuilder};
-use crate::integrate::{Multistep, Status};
+use crate::integrate::{Field, Multistep, Status};
 use crate::task::Reference;
 use nalgebra::Vector6;
 
@@ -169,20 +169,41 @@ impl Planner {
     /// A run that stops does so at a sample that lies beyond its bounds: look at [`is_finished`](Self::is_finished) before
     /// sending positions on.
     pub fn step(&mut self) {
+        if self.advance() {
+            self.stepper.evaluate(&mut self.field);
+            self.look_around();
+        }
+    }
+
+    /// Moves on to the next sample, which is to be evaluated then; false when there is none.
+    pub(super) fn advance(&mut self) -> bool {
         if self.is_finished() {
-            return;
+            return false;
         }
         if self.stepper.advance(&mut self.field) == Status::NonFinite {
             let t = self.time();
             let reason = format!("a joint position became infinite or NaN in the step after t = {t:.6} s");
             self.stop = Some(Stop { status: PlanStatus::NonFinite, reason });
-            return;
+            return false;
         }
-        self.stepper.evaluate(&mut self.field);
+        true
+    }
+
+    /// Evaluates a sample that was [moved on to](Self::advance) by what `field` makes of the planner's own right-hand side.
+    pub(super) fn arrive<'a, F: Field<f64>>(&'a mut self, field: impl FnOnce(&'a mut SynchronousField) -> F) {
+        self.stepper.evaluate(&mut field(&mut self.field));
+    }
+
+    /// Checks and observes a sample that was evaluated.
+    pub(super) fn look_around(&mut self) {
         self.check_lost();
         if self.stop.is_none() {
             self.watch();
         }
+    }
+
+    pub(super) fn field(&self) -> &SynchronousField {
+        &self.field
     }
 
     /// Runs to the end and returns the trajectories.
@@ -192,20 +213,32 @@ impl Planner {
 
     /// Runs to the end, telling `progress` after every step how many of how many are done.
     pub fn run_with(mut self, mut progress: impl FnMut(usize, usize)) -> Plan {
-        let mut arms: Vec<ArmPlan> = self.field.arms.iter().map(|r| empty_plan(r, self.steps())).collect();
-        self.record(&mut arms);
+        let mut arms = self.begin_record();
         while !self.is_finished() {
             self.step();
-            // A sample at which the run stopped is not one to send to a robot.
-            if self.stop.is_none() {
-                self.record(&mut arms);
+            if self.record(&mut arms) {
                 progress(self.index(), self.steps());
             }
         }
         self.conclude(arms)
     }
 
-    fn record(&self, arms: &mut [ArmPlan]) {
+    /// A record with the first sample in it.
+    pub(super) fn begin_record(&self) -> Vec<ArmPlan> {
+        let mut arms: Vec<_> = self.field.arms.iter().map(|arm| empty_plan(arm, self.steps())).collect();
+        self.write_down(&mut arms);
+        arms
+    }
+
+    /// Records the present sample, unless the run stopped there: such a sample is not one to send to a robot.
+    pub(super) fn record(&self, arms: &mut [ArmPlan]) -> bool {
+        if self.stop.is_none() {
+            self.write_down(arms);
+        }
+        self.stop.is_none()
+    }
+
+    fn write_down(&self, arms: &mut [ArmPlan]) {
         for (i, plan) in arms.iter_mut().enumerate() {
             let state = self.arm(i);
             plan.positions.extend_from_slice(state.positions);
@@ -214,7 +247,7 @@ impl Planner {
         }
     }
 
-    fn conclude(self, mut arms: Vec<ArmPlan>) -> Plan {
+    pub(super) fn conclude(self, mut arms: Vec<ArmPlan>) -> Plan {
         let mut warnings = self.description.warnings;
         for ((plan, monitor), runtime) in arms.iter_mut().zip(&self.monitors).zip(&self.field.arms) {
             plan.max_error = monitor.max_error();
