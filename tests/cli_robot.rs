@@ -52,7 +52,7 @@ fn what_does_not_fit_the_chain_says_what_would() {
         kinstep(&["robot", "fk", robot, "--base", base, "--tip", tip, "--q", q, "--json"])
     };
     for (run, code, said) in [
-        (fk("planar4", "base", "tip", "1,2,3"), 2, "expected 4 (j1, j2, j3, j4), got 3"),
+        (fk("planar4", "base", "tip", "1,2,3"), 2, "expected 4 positions (j1, j2, j3, j4), got 3"),
         (fk("planar4", "base", "tip", "1,2,3,x"), 2, "'x' is not known"),
         (fk("planar4", "base", "tip", "1,2,3,nan"), 2, "'nan' is not known"),
         (fk("planar4", "base", "tp", "1,2,3,4"), 3, "did you mean `tip`?"),

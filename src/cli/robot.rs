@@ -305,12 +305,8 @@ fn tooled(robot: Robot, tip: &str, tool: Option<&str>) -> Result<(Robot, String)
 pub(super) fn joint_positions(option: &str, text: Option<&str>, chain: &Chain) -> Result<Vec<f64>, Failure> {
     let text = text.unwrap_or_default();
     let values = if text.trim().is_empty() { Vec::new() } else { numbers(option, text)? };
-    if values.len() == chain.dof() {
-        return Ok(values);
-    }
-    let names: Vec<&str> = chain.joints().iter().map(|joint| joint.name.as_str()).collect();
-    let message = format!("{option}: expected {} ({}), got {}", chain.dof(), names.join(", "), values.len());
-    Err(Failure::usage(message))
+    chain.check_positions(&values).map_err(|e| Failure::usage(format!("{option}: {e}")))?;
+    Ok(values)
 }
 
 /// Reads numbers or expressions in pi, separated by commas.
