@@ -123,7 +123,6 @@ impl Answer {
     fn new(arguments: &InverseArguments, chain: &Chain, solution: &Solution) -> Self {
         let rotation = solution.tip.rotation.matrix();
         let q: Vec<String> = solution.q.iter().map(f64::to_string).collect();
-        let InverseArguments { file, base, tip, .. } = arguments;
         Self {
             found: solution.is_found(),
             joints: chain.joints().iter().map(|joint| joint.name.clone()).collect(),
@@ -136,9 +135,26 @@ impl Answer {
             starts: solution.starts,
             orientation_counts: arguments.orientation.is_some() || arguments.axis.is_some(),
             limits: chain.position_limits().map(|(lower, upper)| [lower, upper]).collect(),
-            again: format!("kinstep robot fk {} --base {base} --tip {tip} --q={}", file.robot, q.join(",")),
+            again: again(arguments, &q.join(",")),
         }
     }
+}
+
+/// The command that gives the pose at the joint positions `q` of the same chain.
+fn again(arguments: &InverseArguments, q: &str) -> String {
+    let InverseArguments { file, base, tip, tool, .. } = arguments;
+    let mut command = format!("kinstep robot fk {} --base {base} --tip {tip}", file.robot);
+    if let Some(calibration) = &file.calibration {
+        let _ = write!(command, " --calibration {}", calibration.display());
+    }
+    for lock in &file.lock {
+        let _ = write!(command, " --lock {lock}");
+    }
+    if let Some(tool) = tool {
+        let _ = write!(command, " --tool '{tool}'");
+    }
+    let _ = write!(command, " --q={q}");
+    command
 }
 
 impl Show for Answer {
