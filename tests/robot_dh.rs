@@ -189,6 +189,7 @@ fn a_table_without_an_arm_says_what_to_write() {
         ("convention = \"standard\"\njoint = 3", "each begun by a line [[joint]]"),
         ("convention = \"standard\"\nvelocity = 3\n[[joint]]\na = 1", "belongs into the rows"),
         ("convention = \"standard\"\n[[joint]]\nkind = \"fixed\"", "no row of the table moves"),
+        ("[joint.j2]\nzero = 0.01", "looks like a calibration"),
         ("sigma = 0.01\n[[arm]]\nname = \"left\"", "looks like a scenario"),
     ] {
         let found = refusals(text);

@@ -2,7 +2,7 @@
 
 use super::table::{DhConvention, DhError, DhRow, DhTable};
 use crate::robot::names::{list, quote};
-use crate::robot::toml_table::{Entries, read_toml, real, wrong_type};
+use crate::robot::toml_table::{Entries, Value, read_toml, real, wrong_type};
 use crate::robot::urdf::report::Report;
 use crate::robot::{JointKind, Limits};
 
@@ -30,12 +30,8 @@ impl DhTable {
 }
 
 fn read(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhTable> {
-    if let Some(key) = ["arm", "sigma", "formula"].into_iter().find(|key| file.value(key).is_some()) {
-        let cause = format!(
-            "a table of a robot has no key `{key}`: this looks like a scenario or a file of formulas, which \
-             `kinstep plan` and `kinstep formula check` read"
-        );
-        report.error(file.place(key), cause);
+    if let Some((place, cause)) = is_something_else(file) {
+        report.error(place, cause);
         return None;
     }
     file.check_keys("a table of a robot", &KEYS, report);
@@ -44,29 +40,7 @@ fn read(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhTable> {
     let (convention, rows) = match (file.value("planar"), file.value("joint")) {
         (Some(_), None) => (DhConvention::Modified, planar(file, report)?),
         (None, Some(value)) => {
-            let Some(entries) = value.get_ref().as_array() else {
-                wrong_type("joint", "a list of rows, each begun by a line [[joint]]", value, report);
-                return None;
-            };
-            for key in ["limits", "velocity"] {
-                if file.value(key).is_some() {
-                    report
-                        .error(file.place(key), format!("`{key}` belongs into the rows, or beside `planar`"));
-                }
-            }
-            let convention = convention(file, report);
-            let count = entries.len();
-            let rows: Vec<DhRow> = entries
-                .iter()
-                .enumerate()
-                .filter_map(|(index, entry)| {
-                    let Some(table) = entry.get_ref().as_table() else {
-                        wrong_type("joint", "rows that are tables", entry, report);
-                        return None;
-                    };
-                    row(&Entries { table, offset: entry.span().start }, index, count, report)
-                })
-                .collect();
+            let (convention, rows) = (convention(file, report), rows(file, value, report)?);
             (convention?, rows)
         }
         (Some(second), Some(_)) => {
@@ -84,6 +58,45 @@ fn read(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhTable> {
         report.error(file.place("joint"), "no row of the table moves");
     }
     Some(DhTable { name, base, convention, rows })
+}
+
+/// Says what other TOML file this is, and where that shows.
+fn is_something_else(file: &Entries<'_, '_>) -> Option<(usize, String)> {
+    let key = ["arm", "sigma", "formula"].into_iter().find(|key| file.value(key).is_some());
+    if let Some(key) = key {
+        let cause = format!(
+            "a table of a robot has no key `{key}`: this looks like a scenario or a file of formulas, which \
+             `kinstep plan` and `kinstep formula check` read"
+        );
+        return Some((file.place(key), cause));
+    }
+    let is_calibration = file.value("joint").is_some_and(|joint| joint.get_ref().is_table());
+    is_calibration.then(|| {
+        let cause = "this looks like a calibration, which goes with a robot (`calibration` of an arm, or \
+                     `--calibration`); a table of a robot has rows, each begun by a line [[joint]]";
+        (file.place("joint"), cause.to_owned())
+    })
+}
+
+fn rows(file: &Entries<'_, '_>, joints: Value<'_, '_>, report: &mut Report<'_>) -> Option<Vec<DhRow>> {
+    let Some(entries) = joints.get_ref().as_array() else {
+        wrong_type("joint", "a list of rows, each begun by a line [[joint]]", joints, report);
+        return None;
+    };
+    for key in ["limits", "velocity"] {
+        if file.value(key).is_some() {
+            report.error(file.place(key), format!("`{key}` belongs into the rows, or beside `planar`"));
+        }
+    }
+    let count = entries.len();
+    let row = |(index, entry): (usize, Value<'_, '_>)| {
+        let Some(table) = entry.get_ref().as_table() else {
+            wrong_type("joint", "rows that are tables", entry, report);
+            return None;
+        };
+        row(&Entries { table, offset: entry.span().start }, index, count, report)
+    };
+    Some(entries.iter().enumerate().filter_map(row).collect())
 }
 
 fn convention(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhConvention> {

@@ -259,24 +259,7 @@ impl Serial {
         origin: IsometryMatrix3<f64>,
         angles: Option<[f64; 3]>,
     ) -> Result<(), String> {
-        if name.trim().is_empty() || link.trim().is_empty() {
-            return Err("its joint or its link has an empty name".to_owned());
-        }
-        if name.len().max(link.len()) > names::LONGEST_NAME {
-            return Err(format!("a name has more than {} bytes", names::LONGEST_NAME));
-        }
-        if !self.link_names.insert(link.to_owned()) {
-            return Err(format!(
-                "link {} is there already; every link needs its own name",
-                names::quote(link)
-            ));
-        }
-        if !self.joint_names.insert(name.to_owned()) {
-            return Err(format!(
-                "joint {} is there already; every joint needs its own name",
-                names::quote(name)
-            ));
-        }
+        self.take_names(name, link)?;
         let child = self.links.len();
         self.links.push(Link { name: link.to_owned(), parent_joint: Some(self.joints.len()), defect: None });
         let limits = if row.kind.is_movable() { row.limits } else { Limits::UNLIMITED };
@@ -296,6 +279,29 @@ impl Serial {
             defect: None,
             angles,
         });
+        Ok(())
+    }
+
+    /// Refuses names that are empty, too long or there already.
+    fn take_names(&mut self, name: &str, link: &str) -> Result<(), String> {
+        if name.trim().is_empty() || link.trim().is_empty() {
+            return Err("its joint or its link has an empty name".to_owned());
+        }
+        if name.len().max(link.len()) > names::LONGEST_NAME {
+            return Err(format!("a name has more than {} bytes", names::LONGEST_NAME));
+        }
+        if !self.link_names.insert(link.to_owned()) {
+            return Err(format!(
+                "link {} is there already; every link needs its own name",
+                names::quote(link)
+            ));
+        }
+        if !self.joint_names.insert(name.to_owned()) {
+            return Err(format!(
+                "joint {} is there already; every joint needs its own name",
+                names::quote(name)
+            ));
+        }
         Ok(())
     }
 }
