@@ -56,6 +56,23 @@ pub enum LockError {
         /// The largest allowed.
         upper: f64,
     },
+    /// A position at which a joint that follows would leave its own limits.
+    #[error("joint {} can not be locked at {position}: {}, which follows it, would stand at {value}, and moves between \
+             {lower} and {upper}", names::quote(.joint), names::quote(.follower))]
+    Follower {
+        /// The joint.
+        joint: String,
+        /// The position asked for [rad or m].
+        position: f64,
+        /// The joint that follows it.
+        follower: String,
+        /// Where that would stand [rad or m].
+        value: f64,
+        /// The smallest that it allows.
+        lower: f64,
+        /// The largest that it allows.
+        upper: f64,
+    },
 }
 
 fn wanted(kind: JointKind) -> &'static str {
@@ -76,7 +93,7 @@ impl Robot {
     ///
     /// # Errors
     /// [`LockError`]: no such joint (with the nearest names), a defective or a fixed one, too few or too many numbers, or
-    /// a position outside the limits.
+    /// a position outside its limits or those of a joint that follows it.
     ///
     /// ```
     /// use kinstep::robot::embedded;
@@ -97,20 +114,28 @@ impl Robot {
         let mut robot = self.clone();
         fix(&mut robot.joints[index], &held);
         if let [position] = *values {
-            robot.still_followers(index, position);
+            robot.still_followers(index, position)?;
         }
         Ok(robot)
     }
 
     /// Fixes the joints that follow a joint which stands at `position`.
-    fn still_followers(&mut self, driver: usize, position: f64) {
+    fn still_followers(&mut self, driver: usize, position: f64) -> Result<(), LockError> {
+        let name = self.joints[driver].name.clone();
         for joint in &mut self.joints {
-            if let Some(mimic) = joint.mimic.filter(|mimic| mimic.driver == driver) {
-                let own = mimic.multiplier * position + mimic.offset;
-                let held = displacement(joint.kind, joint.axis, own);
-                fix(joint, &held);
+            let Some(mimic) = joint.mimic.filter(|mimic| mimic.driver == driver) else { continue };
+            let own = mimic.multiplier * position + mimic.offset;
+            let Limits { lower, upper, .. } = joint.limits;
+            // The follower's position carries the rounding of its ratio.
+            let slack = 1e-12 * own.abs().max(1.0);
+            if !(lower - slack <= own && own <= upper + slack) {
+                let (joint, follower) = (name, joint.name.clone());
+                return Err(LockError::Follower { joint, position, follower, value: own, lower, upper });
             }
+            let held = displacement(joint.kind, joint.axis, own);
+            fix(joint, &held);
         }
+        Ok(())
     }
 
     /// The place of a joint among [`Robot::joints`].
