@@ -40,12 +40,10 @@ fn a_hundred_thousand_joints_are_refused_in_memory_of_the_files_order() {
 #[test]
 fn the_most_joints_that_are_read_take_memory_of_the_files_order() {
     let text = chain_of(19_999);
-    let mut robot = None;
-    let counted = measure(|| robot = Robot::from_urdf(&text).ok());
-    let robot = robot.unwrap();
-    assert_eq!(robot.joints().len(), 19_999);
+    let mut joints = 0;
+    let counted = measure(|| joints = Robot::from_urdf(&text).unwrap().joints().len());
+    assert_eq!(joints, 19_999);
     assert!(counted.bytes_max < 8 * 1024 * 19_999, "{} bytes, 8 kB a joint are fair", counted.bytes_max);
-    assert_eq!(robot.chain("l0", "l19999").unwrap().dof(), 19_999);
 }
 
 #[test]
