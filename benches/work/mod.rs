@@ -29,7 +29,7 @@ const STEPS: usize = 20_000;
 const SIGMA: f64 = 1e-3;
 
 /// Every work, in the order in which they are listed.
-pub(crate) const NAMES: [&str; 11] = [
+pub(crate) const NAMES: [&str; 13] = [
     "kinematics ur5e",
     "kinematics panda",
     "kinematics iiwa14",
@@ -37,6 +37,8 @@ pub(crate) const NAMES: [&str; 11] = [
     "solve",
     "step 1 panda",
     "step 2 pandas",
+    "step 4 pandas",
+    "step 8 pandas",
     "step 2 pandas, path computed",
     "step 2 pandas, split-ab6",
     "4 plans, one by one",
@@ -49,6 +51,8 @@ pub(crate) fn by_name(name: &str) -> Option<Work> {
         "solve" => solve(),
         "step 1 panda" => steps(1, "la6-wang-guo", 0.4, true),
         "step 2 pandas" => steps(2, "la6-wang-guo", 0.4, true),
+        "step 4 pandas" => steps(4, "la6-wang-guo", 0.4, true),
+        "step 8 pandas" => steps(8, "la6-wang-guo", 0.4, true),
         "step 2 pandas, path computed" => steps(2, "la6-wang-guo", 0.4, false),
         "step 2 pandas, split-ab6" => steps(2, "split-ab6", 1.0, true),
         "4 plans, one by one" => plans(|planners| planners.into_iter().map(Planner::run).collect()),
