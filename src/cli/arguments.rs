@@ -48,6 +48,27 @@ Setting one of law.h and law.gain takes the other away.")]
     /// Run the paper's experiments beside the bounds that it states; exit 1 if one is missed
     #[command(after_help = "Examples:\n  kinstep reproduce\n  kinstep reproduce --out paper --json")]
     Reproduce(ReproduceArguments),
+    /// Study which order runs really show: of scenarios, of textbook problems, of your own row
+    #[command(after_help = "\
+Examples:
+  kinstep order examples/dual_panda.toml
+  kinstep order examples/dual_panda.toml --formula la6-wang-guo --formula split-ab4 --out study
+  kinstep order kepler arenstorf --formula ab4
+  kinstep order swing --formulas mine.toml --formula my-formula
+  kinstep order kepler --formula ab8 --set study.precision=extended
+
+A row that does not reach the order it is held to exits with 1, a finest run that stops with 5.")]
+    Order(OrderArguments),
+    /// Plan a scenario many times, with values from lists and distributions, into one table
+    #[command(after_help = "\
+Examples:
+  kinstep sweep mine.toml --vary law.h=0.1,0.2,0.4 --vary sigma=0.02,0.01 --out grid.csv
+  kinstep sweep mine.toml --vary formula=la6-wang-guo,split-ab4 --vary 'law.h=linspace(0.1, 0.6, 11)' --out rows.csv
+  kinstep sweep a.toml b.toml --vary 'arm.left.q0[2]=normal(0.3, 0.05)' --samples 1000 --out scatter.json
+
+Values: a,b,c  linspace(from, to, count)  logspace(from, to, count)  uniform(from, to)  loguniform(from, to)
+normal(mean, deviation). A sweep that was interrupted goes on where it stopped when the same command is given again.")]
+    Sweep(SweepArguments),
     /// Look at difference formulas and make new ones: list, show, check, derive, search, compare
     #[command(
         subcommand,
@@ -81,10 +102,72 @@ pub(super) struct PlanArguments {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct OrderArguments {
+    /// Scenario files, or names of built-in problems; without any, the built-in problems are listed
+    #[arg(value_name = "SCENARIO")]
+    pub(super) scenarios: Vec<String>,
+
+    /// A row to study in place of those that the scenario names. May be given again
+    #[arg(long, value_name = "ID")]
+    pub(super) formula: Vec<String>,
+
+    /// Lay a value over every scenario. May be given again
+    #[arg(long, value_name = "KEY.PATH=VALUE")]
+    pub(super) set: Vec<String>,
+
+    /// Folder for the figure and the numbers of every study; made if it is not there
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+
+    /// Replace files that are already there
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SweepArguments {
+    /// Scenario files; each is swept
+    #[arg(value_name = "SCENARIO", required = true)]
+    pub(super) scenarios: Vec<PathBuf>,
+
+    /// A key of the scenario and its values. May be given again: all combinations are run
+    #[arg(long, value_name = "KEY.PATH=VALUES", allow_hyphen_values = true)]
+    pub(super) vary: Vec<String>,
+
+    /// The table: .csv or .json
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: PathBuf,
+
+    /// How often distributions are drawn for every combination of the lists
+    #[arg(long, default_value_t = 100)]
+    pub(super) samples: usize,
+
+    /// What the draws depend on
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+
+    /// Lay a value over every scenario. May be given again
+    #[arg(long, value_name = "KEY.PATH=VALUE")]
+    pub(super) set: Vec<String>,
+
+    /// Number of threads; all processors unless given. The table does not depend on it
+    #[arg(long)]
+    pub(super) threads: Option<usize>,
+
+    /// Replace a table that is already there, and begin afresh
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct ReproduceArguments {
     /// Folder for the trajectories and reproduce.json; made if it is not there
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+
+    /// Write the page about the paper, in Markdown, with every order measured anew
+    #[arg(long, value_name = "FILE", conflicts_with = "out")]
+    pub(super) page: Option<PathBuf>,
 
     /// Replace files that are already there
     #[arg(long)]

@@ -11,6 +11,7 @@ mod formula_list;
 mod formula_plot;
 mod formula_schema;
 mod formula_search;
+mod order;
 mod output;
 mod plan;
 mod progress;
@@ -20,6 +21,7 @@ mod robot_export;
 mod robot_ik;
 mod robot_show;
 mod schema;
+mod sweep;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -59,9 +61,11 @@ fn dispatch(arguments: &Arguments, output: &mut Output) -> Result<Exit, Failure>
     let own = arguments.formulas.as_deref();
     match &arguments.command {
         Command::Plan(command) => plan::run(command, own, output),
+        Command::Order(command) => order::run(command, own, output),
         Command::Reproduce(command) => reproduce::run(command, output),
         Command::Formula(command) => formula::run(command, own, output),
         Command::Robot(command) => robot::run(command, output),
+        Command::Sweep(command) => sweep::run(command, own, output),
         Command::Schema(command) => schema::run(*command, output),
     }
 }

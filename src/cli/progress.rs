@@ -17,13 +17,19 @@ pub(super) struct Progress {
     done_before: usize,
     bar: Option<ProgressBar>,
     shows: bool,
+    things: &'static str,
 }
 
 impl Progress {
     /// Returns the progress of `total` steps in all.
     pub(super) fn new(total: usize) -> Self {
+        Self::of(total, "steps")
+    }
+
+    /// Returns the progress of `total` things in all.
+    pub(super) fn of(total: usize, things: &'static str) -> Self {
         let shows = io::stderr().is_terminal();
-        Self { started: Instant::now(), total, done_before: 0, bar: None, shows }
+        Self { started: Instant::now(), total, done_before: 0, bar: None, shows, things }
     }
 
     /// Says that the present run has done `done` of its steps.
@@ -31,8 +37,8 @@ impl Progress {
         if !self.shows || !done.is_multiple_of(STRIDE) || self.started.elapsed() < PATIENCE {
             return;
         }
-        let (total, started) = (self.total as u64, self.started);
-        let bar = self.bar.get_or_insert_with(|| bar(total, started));
+        let (total, started, things) = (self.total as u64, self.started, self.things);
+        let bar = self.bar.get_or_insert_with(|| bar(total, started, things));
         bar.set_position((self.done_before + done) as u64);
     }
 
@@ -50,8 +56,8 @@ impl Drop for Progress {
     }
 }
 
-fn bar(total: u64, started: Instant) -> ProgressBar {
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} steps, {eta} left")
+fn bar(total: u64, started: Instant, things: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(&format!("{{wide_bar}} {{pos}}/{{len}} {things}, {{eta}} left"))
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr())
         .with_style(style)

@@ -1,6 +1,7 @@
 //! `kinstep reproduce`: the experiments of T. Wang and D. Guo, IEEE Access 8 (2020), beside what the paper states.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use serde::Serialize;
 
@@ -11,7 +12,7 @@ use super::output::{Output, Show};
 use super::progress::Progress;
 use crate::formula::FormulaTable;
 use crate::planner::Plan;
-use crate::report::{PlanCsv, PlanFormat, Table, short};
+use crate::report::{PlanCsv, PlanFormat, Table, paper_page, short, write_whole};
 use crate::scenario::{Scenario, ScenarioText};
 
 const EXAMPLE_A1: &str = include_str!("../../examples/planar_dual.toml");
@@ -144,6 +145,9 @@ struct Decade {
 }
 
 pub(super) fn run(arguments: &ReproduceArguments, output: &mut Output) -> Result<Exit, Failure> {
+    if let Some(page) = &arguments.page {
+        return write_page(page, arguments.force, output);
+    }
     let experiments = experiments();
     let mut names: Vec<String> = experiments.iter().filter_map(Experiment::trajectory_name).collect();
     names.push("reproduce.json".to_owned());
@@ -156,6 +160,19 @@ pub(super) fn run(arguments: &ReproduceArguments, output: &mut Output) -> Result
     }
     output.show(&reproduction)?;
     Ok(if reproduction.is_within_bounds() { Exit::Done } else { Exit::CheckFailed })
+}
+
+fn write_page(page: &Path, force: bool, output: &mut Output) -> Result<Exit, Failure> {
+    let text = paper_page()?;
+    let file = page.display().to_string();
+    write_whole(page, force, |out| out.write_all(text.as_bytes()))
+        .map_err(|e| Failure::new(Exit::File, e.to_string()).in_file(&file))?;
+    if output.wants_json() {
+        output.json(&serde_json::json!({ "page": file }))?;
+    } else {
+        output.text(&format!("Written to {file}.\n"))?;
+    }
+    Ok(Exit::Done)
 }
 
 fn run_all(experiments: &[Experiment], folder: Option<&Folder>) -> Result<Reproduction, Failure> {

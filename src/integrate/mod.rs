@@ -7,6 +7,7 @@
 //! with `x' = f(t, x) + g(t, x)`, newest sample first (index `j` is time `n + 1 - j`; not the ascending order of
 //! Hairer, Norsett and Wanner).
 
+mod equations;
 mod field;
 mod multistep;
 mod ring;
@@ -15,8 +16,9 @@ mod scalar;
 mod starter;
 mod weights;
 
+pub use equations::{EquationError, EquationField, EquationText, Equations};
 pub use field::{Field, Ode, Parts};
 pub use multistep::{IntegrateError, Multistep, Status};
 pub use runge_kutta::Tableau;
-pub use scalar::Scalar;
+pub use scalar::{Elementary, Scalar};
 pub use starter::Starter;

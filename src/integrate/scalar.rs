@@ -1,4 +1,4 @@
-use crate::math::Rational;
+use crate::math::{DoubleDouble, Rational};
 use num_traits::{One, ToPrimitive, Zero};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
@@ -73,5 +73,105 @@ impl Scalar for f32 {
 
     fn is_finite(self) -> bool {
         f32::is_finite(self)
+    }
+}
+
+impl Scalar for DoubleDouble {
+    fn from_rational(value: &Rational) -> Self {
+        Self::from_rational(value)
+    }
+
+    fn from_index(index: usize) -> Self {
+        (index as f64).into()
+    }
+
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+}
+
+/// A scalar with the functions that right-hand sides are written with.
+pub trait Elementary: Scalar {
+    /// How far apart numbers around one are.
+    const RESOLUTION: f64;
+
+    /// Sine and cosine of an angle \[rad\].
+    fn sin_cos(self) -> (Self, Self);
+
+    /// The exponential.
+    #[must_use]
+    fn exp(self) -> Self;
+
+    /// The natural logarithm.
+    #[must_use]
+    fn ln(self) -> Self;
+
+    /// The ratio of a circle's circumference to its diameter.
+    fn pi() -> Self;
+
+    /// The nearest of these numbers to one of 32 digits.
+    fn from_extended(value: DoubleDouble) -> Self;
+
+    /// The number with 32 digits.
+    fn to_extended(self) -> DoubleDouble;
+}
+
+impl Elementary for f64 {
+    const RESOLUTION: f64 = f64::EPSILON;
+
+    fn sin_cos(self) -> (Self, Self) {
+        self.sin_cos()
+    }
+
+    fn exp(self) -> Self {
+        self.exp()
+    }
+
+    fn ln(self) -> Self {
+        self.ln()
+    }
+
+    fn pi() -> Self {
+        std::f64::consts::PI
+    }
+
+    fn from_extended(value: DoubleDouble) -> Self {
+        value.to_f64()
+    }
+
+    fn to_extended(self) -> DoubleDouble {
+        self.into()
+    }
+}
+
+impl Elementary for DoubleDouble {
+    const RESOLUTION: f64 = 4.0 * Self::RESOLUTION;
+
+    fn sin_cos(self) -> (Self, Self) {
+        self.sin_cos()
+    }
+
+    fn exp(self) -> Self {
+        self.exp()
+    }
+
+    fn ln(self) -> Self {
+        self.ln()
+    }
+
+    fn pi() -> Self {
+        Self::PI
+    }
+
+    fn from_extended(value: DoubleDouble) -> Self {
+        value
+    }
+
+    fn to_extended(self) -> DoubleDouble {
+        self
     }
 }

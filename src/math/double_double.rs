@@ -1,20 +1,74 @@
 //! Real numbers as unevaluated sums of two doubles: about 32 digits at the price of twenty operations.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+use num_traits::{One, Zero};
 
 use super::complex_roots::Real;
 use super::rational::{Rational, rational_from_f64, rational_to_f64};
 
-/// high + low with |low| at most half a unit in the last place of high (Dekker 1971; Knuth's two-sum).
+/// A real number of about 32 digits: high + low with |low| at most half a unit in the last place of high (T. J. Dekker,
+/// Numer. Math. 18, 1971; Knuth's two-sum). What overflows a double overflows here too.
+///
+/// ```
+/// use kinstep::math::DoubleDouble;
+/// let third = DoubleDouble::from(1.0) / DoubleDouble::from(3.0);
+/// let rest = third + third + third - DoubleDouble::from(1.0);
+/// assert!(rest.to_f64().abs() < 1e-31);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-pub(crate) struct DoubleDouble {
+pub struct DoubleDouble {
     high: f64,
     low: f64,
 }
 
+impl From<f64> for DoubleDouble {
+    fn from(high: f64) -> Self {
+        Self { high, low: 0.0 }
+    }
+}
+
+impl Zero for DoubleDouble {
+    fn zero() -> Self {
+        Self::from(0.0)
+    }
+
+    fn is_zero(&self) -> bool {
+        self.high == 0.0
+    }
+}
+
+impl One for DoubleDouble {
+    fn one() -> Self {
+        Self::from(1.0)
+    }
+}
+
+impl AddAssign for DoubleDouble {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
 impl DoubleDouble {
+    /// The ratio of a circle's circumference to its diameter.
+    pub const PI: Self = Self { high: std::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
+
+    /// Half the spacing of the numbers around one: 2^-106.
+    pub const RESOLUTION: f64 = 1.232_595_164_407_831e-32;
+
+    /// The nearest double.
+    pub fn to_f64(self) -> f64 {
+        self.high
+    }
+
+    /// Whether the number is neither infinite nor NaN.
+    pub fn is_finite(self) -> bool {
+        self.high.is_finite() && self.low.is_finite()
+    }
+
     /// Returns the number nearest to an exact one, to about 32 digits.
-    pub(crate) fn from_rational(value: &Rational) -> Self {
+    pub fn from_rational(value: &Rational) -> Self {
         let high = rational_to_f64(value);
         let rest = rational_from_f64(high).map_or(0.0, |high| rational_to_f64(&(value - high)));
         Self::sum_of_ordered(high, rest)
@@ -94,7 +148,7 @@ impl Div for DoubleDouble {
 
 impl Real for DoubleDouble {
     fn from_f64(value: f64) -> Self {
-        Self { high: value, low: 0.0 }
+        value.into()
     }
 
     fn to_f64(&self) -> f64 {

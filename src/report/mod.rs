@@ -3,6 +3,8 @@
 pub mod figure;
 mod file;
 mod formula_page;
+mod order;
+mod paper_page;
 mod plan;
 mod plan_csv;
 #[cfg(feature = "cli")]
@@ -12,6 +14,8 @@ mod table;
 
 pub use file::{WriteError, write_whole};
 pub use formula_page::{FormulaPage, pareto_front};
+pub use order::OrderPage;
+pub use paper_page::paper_page;
 pub use plan::PlanFormat;
 pub use plan_csv::PlanCsv;
 #[cfg(feature = "cli")]

@@ -15,7 +15,7 @@ use crate::formula::{Duty, Formula, FormulaTable};
 use crate::law::Pseudoinverse;
 use crate::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
 use crate::robot::{Chain, ChainError, ChainJoint, PositionsError, UrdfOptions};
-use crate::task::{self, Motion, Planar, PlanarCurve, TimeLaw, Turning};
+use crate::task::{self, Leaning, Motion, Planar, PlanarCurve, TimeLaw, Turning};
 
 impl Scenario {
     /// Returns a planner for the scenario with a row of `table`; robot files are looked for from `folder`, the place
@@ -26,6 +26,11 @@ impl Scenario {
     /// gives it a place.
     pub fn planner(&self, table: &FormulaTable, folder: Option<&Path>) -> Result<Planner, ScenarioError> {
         self.check()?;
+        if self.problem.is_some() {
+            let problem =
+                "this scenario is an initial value problem and moves no arm; `kinstep order` runs it";
+            return Err(ScenarioError::at(ErrorKind::Scenario, &KeyPath::dotted("problem"), problem));
+        }
         let formula = self.formula_of(table);
         let arms = self.build_arms(folder);
         let refusals = arms.iter().filter_map(|arm| arm.as_ref().err());
@@ -38,7 +43,7 @@ impl Scenario {
     }
 
     /// Returns the row that the scenario names, or the best general one, if it may be run.
-    fn formula_of<'t>(&self, table: &'t FormulaTable) -> Result<&'t Formula, ScenarioError> {
+    pub(crate) fn formula_of<'t>(&self, table: &'t FormulaTable) -> Result<&'t Formula, ScenarioError> {
         let at = KeyPath::dotted("formula");
         let formula = match &self.formula {
             Some(id) => table.get(id).map_err(|e| ScenarioError::at(ErrorKind::Scenario, &at, e))?,
@@ -294,6 +299,10 @@ impl PathSpec {
     fn path(&self, start: &IsometryMatrix3<f64>) -> Box<dyn task::Path> {
         let path: Box<dyn task::Path> = match self.kind {
             PathKind::Line => Box::new(task::Line { displacement: self.line_displacement(start) }),
+            PathKind::Fourier => Box::new(task::Fourier {
+                cosines: self.cosines.iter().flatten().map(|a| vector(a)).collect(),
+                sines: self.sines.iter().flatten().map(|b| vector(b)).collect(),
+            }),
             _ => Box::new(Planar::new(
                 self.curve(),
                 self.plane.unwrap_or_default(),
@@ -305,7 +314,12 @@ impl PathSpec {
         match &self.turn {
             None => path,
             Some(turn) => {
-                Box::new(Turning::new(path, Unit::new_normalize(vector(&turn.axis)), turn.angle.value()))
+                let (axis, angle) = (Unit::new_normalize(vector(&turn.axis)), turn.angle.value());
+                if turn.back {
+                    Box::new(Leaning::new(path, axis, angle))
+                } else {
+                    Box::new(Turning::new(path, axis, angle))
+                }
             }
         }
     }
@@ -339,7 +353,7 @@ impl PathSpec {
                 frequencies: pair(&self.frequencies),
                 phase: value_or(self.phase.as_ref(), 0.0),
             }),
-            PathKind::Circle | PathKind::Line => Box::new(task::Circle { radius }),
+            PathKind::Circle | PathKind::Line | PathKind::Fourier => Box::new(task::Circle { radius }),
         }
     }
 }

@@ -6,6 +6,7 @@ use super::model::{ArmSpec, Scenario};
 use super::path_spec::{PathKind, PathSpec, TurnSpec};
 use super::real::Real;
 use super::start_pose::{self, StartPose};
+use super::study_spec::StudySpec;
 use crate::task::TaskKind;
 
 /// Largest length [m], angle [rad] or other number of an arm that is believed.
@@ -31,9 +32,17 @@ impl Scenario {
     pub fn check(&self) -> Result<(), ScenarioError> {
         let arms = KeyPath::dotted("arm");
         let mut found = vec![self.check_time(), self.check_law()];
-        found.push(require(!self.arm.is_empty(), &arms, || {
-            "a scenario needs at least one [[arm]]".to_owned()
-        }));
+        found.extend(self.study.as_ref().map(StudySpec::check));
+        if self.problem.is_some() {
+            found.push(require(self.arm.is_empty(), &arms, || {
+                "a scenario has arms or a [problem], not both: take one of them away".to_owned()
+            }));
+            found.push(self.equations().map(|_| ()));
+        } else {
+            found.push(require(!self.arm.is_empty(), &arms, || {
+                "a scenario needs at least one [[arm]]".to_owned()
+            }));
+        }
         for (index, arm) in self.arm.iter().enumerate() {
             let name = arms.index(index).key("name");
             let taken = self.arm[..index].iter().any(|other| other.name == arm.name);

@@ -89,6 +89,11 @@ impl ScenarioText {
         Ok(scenario)
     }
 
+    /// Returns the text with everything that was laid over it.
+    pub fn raw(&self) -> &str {
+        self.edited.raw()
+    }
+
     /// Returns the folder that paths in the scenario are relative to.
     pub fn folder(&self) -> Option<&Path> {
         self.file.as_deref().and_then(Path::parent)

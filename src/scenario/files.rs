@@ -56,13 +56,16 @@ impl Scenario {
             }
         }
         let mut rows: Vec<PathBuf> = Vec::new();
-        for named in &self.formulas {
+        let (texts, files): (Vec<&String>, Vec<&String>) =
+            self.formulas.iter().partition(|named| named.trim_start().starts_with("[[formula]]"));
+        for named in files {
             rows.push(find(named, folder).ok_or_else(|| missing(named, folder))?);
         }
         rows.extend(
             more_rows.filter(|more| !rows.iter().any(|row| is_same_file(row, more))).map(Path::to_owned),
         );
-        moved.formulas = rows.iter().map(|row| reference(row, into)).collect::<Result<_, _>>()?;
+        let files = rows.iter().map(|row| reference(row, into)).collect::<Result<Vec<_>, _>>()?;
+        moved.formulas = texts.into_iter().cloned().chain(files).collect();
         Ok(moved)
     }
 }

@@ -49,6 +49,28 @@ impl FormulaRows {
         Ok(())
     }
 
+    /// Adds the rows of a scenario's own formula files, which are looked for from `folder` and then from the working directory.
+    ///
+    /// # Errors
+    /// As [`add_file`](Self::add_file).
+    pub fn add_rows_of(&mut self, scenario: &Scenario, folder: Option<&Path>) -> Result<(), ScenarioError> {
+        for (index, named) in scenario.formulas.iter().enumerate() {
+            if named.trim_start().starts_with("[[formula]]") {
+                let place = Path::new("rows in the scenario");
+                self.add(place, named).map_err(|e| refused_rows(&e, place, named))?;
+                continue;
+            }
+            let file = files::find(named, folder).ok_or_else(|| files::missing(named, folder));
+            file.and_then(|file| self.add_file(&file)).map_err(|e| match e.kind {
+                ErrorKind::File => {
+                    ScenarioError::at(e.kind, &KeyPath::dotted("formulas").index(index), e.message)
+                }
+                _ => e,
+            })?;
+        }
+        Ok(())
+    }
+
     fn add(&mut self, file: &Path, text: &str) -> Result<(), TableError> {
         let (more, contradictions) = FormulaTable::believable_rows(text)?;
         let of_good_rows = more.iter().map(|formula| (formula.id(), formula.row().place()));
@@ -99,15 +121,7 @@ impl Scenario {
     /// As [`FormulaRows::add_file`].
     pub fn formula_rows(&self, folder: Option<&Path>) -> Result<FormulaRows, ScenarioError> {
         let mut rows = FormulaRows::default();
-        for (index, named) in self.formulas.iter().enumerate() {
-            let file = files::find(named, folder).ok_or_else(|| files::missing(named, folder));
-            file.and_then(|file| rows.add_file(&file)).map_err(|e| match e.kind {
-                ErrorKind::File => {
-                    ScenarioError::at(e.kind, &KeyPath::dotted("formulas").index(index), e.message)
-                }
-                _ => e,
-            })?;
-        }
+        rows.add_rows_of(self, folder)?;
         Ok(rows)
     }
 }

@@ -18,6 +18,8 @@ mod real;
 mod robot_edits;
 mod robots;
 mod start_pose;
+mod study_spec;
+pub mod suite;
 #[cfg(test)]
 mod tests;
 
@@ -33,6 +35,7 @@ pub use path_spec::{PathKind, PathSpec, TimeLawKind, TurnSpec};
 pub use real::Real;
 pub use robots::RobotSource;
 pub use start_pose::{OnPath, StartPose, TipPose};
+pub use study_spec::{MeasureKind, Precision, ProblemSpec, StudySpec};
 
 #[cfg(feature = "cli")]
 pub(crate) use document::read_text;

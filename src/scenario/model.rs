@@ -8,6 +8,7 @@ use super::held::Held;
 use super::path_spec::PathSpec;
 use super::real::{Real, exactly};
 use super::start_pose::StartPose;
+use super::study_spec::{ProblemSpec, StudySpec};
 use crate::task::TaskKind;
 
 /// A plan to be made: how time is discretised, what moves, along what, and how redundancy is resolved.
@@ -25,7 +26,7 @@ pub struct Scenario {
     /// How the first states are made. Default: the cheapest Runge-Kutta start of sufficient order.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Start>,
-    /// Files with further formula rows, relative to the scenario's own file.
+    /// Files with further formula rows, relative to the scenario's own file, or such rows themselves as text.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub formulas: Vec<String>,
     /// Permit a step size h outside the formula's feedback range, to study what happens there.
@@ -34,7 +35,14 @@ pub struct Scenario {
     /// How redundancy is resolved, and how strongly the task error is fed back.
     #[serde(default)]
     pub law: LawSpec,
+    /// How the order of the run is studied by `kinstep order`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub study: Option<StudySpec>,
+    /// An initial value problem in place of arms, for `kinstep order`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<ProblemSpec>,
     /// The arms, which move in synchrony.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub arm: Vec<ArmSpec>,
 }
 
@@ -94,8 +102,8 @@ pub enum LawKind {
 pub struct ArmSpec {
     /// Name of the arm: letters, digits, `-` and `_`.
     pub name: String,
-    /// A built-in robot by name, or a path to a URDF file or a Denavit-Hartenberg table, relative to the scenario's own
-    /// file.
+    /// A built-in robot by name, a path to a URDF file or a Denavit-Hartenberg table, relative to the scenario's own
+    /// file, or URDF text.
     pub robot: String,
     /// Link at which the chain begins.
     pub base: String,

@@ -18,8 +18,9 @@ pub(super) fn apply(
     let (target, value) = assignment
         .split_once('=')
         .ok_or_else(|| refuse("write key.path=value, for example law.h=0.4".to_owned()))?;
-    let keys = Key::parse(target.trim())
-        .map_err(|_| refuse(format!("\"{}\" is not a key path such as arm.left.q0", target.trim())))?;
+    let (target, entry) = split_entry(target.trim());
+    let keys = Key::parse(target)
+        .map_err(|_| refuse(format!("\"{target}\" is not a key path such as arm.left.q0")))?;
     let path = keys.iter().fold(KeyPath::default(), |path, key| path.key(key.get()));
     let value = value.trim().parse::<Value>().unwrap_or_else(|_| Value::from(value.trim()));
 
@@ -28,8 +29,27 @@ pub(super) fn apply(
     if let Some((_, other)) = EXCLUSIVE.iter().find(|(set, _)| *set == dotted) {
         remove(edited.as_table_mut(), other);
     }
-    insert(edited.as_table_mut(), &path, value).map_err(refuse)?;
+    insert(edited.as_table_mut(), &path, entry, value).map_err(refuse)?;
+    let path = entry.map_or_else(|| path.clone(), |entry| path.index(entry));
     Ok((path, edited.to_string()))
+}
+
+/// Splits `arm.left.q0[2]` into the list and the place in it.
+fn split_entry(target: &str) -> (&str, Option<usize>) {
+    let inside = target.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
+    match inside.and_then(|(list, place)| Some((list, place.trim().parse().ok()?))) {
+        Some((list, place)) => (list, Some(place)),
+        None => (target, None),
+    }
+}
+
+/// Replaces one entry of a list.
+fn replace_entry(item: Option<&mut Item>, place: usize, value: Value) -> Result<(), String> {
+    let list = item.and_then(Item::as_array_mut).ok_or("there is no such list, so it has no entries")?;
+    let entries = list.len();
+    let entry = list.get_mut(place);
+    *entry.ok_or_else(|| format!("the list has {entries} entries, counted from 0"))? = value;
+    Ok(())
 }
 
 fn remove(table: &mut dyn TableLike, dotted: &str) {
@@ -42,7 +62,12 @@ fn remove(table: &mut dyn TableLike, dotted: &str) {
     }
 }
 
-fn insert(root: &mut dyn TableLike, path: &KeyPath, value: Value) -> Result<(), String> {
+fn insert(
+    root: &mut dyn TableLike,
+    path: &KeyPath,
+    entry: Option<usize>,
+    value: Value,
+) -> Result<(), String> {
     let keys: Vec<&str> = path.steps().iter().filter_map(super::key_path::Step::as_key).collect();
     let Some((last, outer)) = keys.split_last() else { return Err("the key path is empty".to_owned()) };
     let mut table = root;
@@ -58,6 +83,9 @@ fn insert(root: &mut dyn TableLike, path: &KeyPath, value: Value) -> Result<(), 
         } else {
             item.as_table_like_mut().ok_or_else(|| format!("{reached} is a value, it has no keys inside"))?
         };
+    }
+    if let Some(place) = entry {
+        return replace_entry(table.get_mut(last), place, value);
     }
     if let Some(item) = table.get_mut(last) {
         *item = Item::Value(value);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::real::{Real, exactly, some_exactly};
+use super::real::{Real, exactly, some_exactly, some_triples};
 use crate::task::Plane;
 
 /// A path for the tip. Curves are drawn in `plane`, turned by `rotation`, and shifted so that they begin at the
@@ -34,6 +34,12 @@ pub struct PathSpec {
     /// Phase of the x part of a Lissajous curve in rad. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phase: Option<Real>,
+    /// Vectors a_1, a_2, ... of a Fourier path in m, in world axes.
+    #[serde(default, deserialize_with = "some_triples", skip_serializing_if = "Option::is_none")]
+    pub cosines: Option<Vec<[Real; 3]>>,
+    /// Vectors b_1, b_2, ... of a Fourier path in m, in world axes.
+    #[serde(default, deserialize_with = "some_triples", skip_serializing_if = "Option::is_none")]
+    pub sines: Option<Vec<[Real; 3]>>,
     /// Plane that the curve is drawn in, in world axes. Default: xy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane: Option<Plane>,
@@ -74,6 +80,8 @@ pub enum PathKind {
     Lissajous,
     /// radius cos(petals a) (cos a, sin a).
     Rose,
+    /// sum of a_m (cos 2 pi m u - 1) + b_m sin 2 pi m u: any smooth closed path in space.
+    Fourier,
 }
 
 /// How the angle of a path runs from its beginning to its end.
@@ -101,6 +109,9 @@ pub struct TurnSpec {
     pub axis: [Real; 3],
     /// Angle of the whole turn in rad.
     pub angle: Real,
+    /// Whether the tip turns over until half-way and then back, instead of evenly. Default: no.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub back: bool,
 }
 
 /// Parameters that every curve by angle takes.
@@ -116,6 +127,7 @@ impl PathKind {
             Self::Line => "line",
             Self::Lissajous => "lissajous",
             Self::Rose => "rose",
+            Self::Fourier => "fourier",
         }
     }
 
@@ -125,6 +137,7 @@ impl PathKind {
             Self::Circle | Self::Tricuspid | Self::Astroid => &["radius"],
             Self::Rose => &["radius", "petals"],
             Self::Lissajous => &["amplitudes", "frequencies"],
+            Self::Fourier => &["cosines", "sines"],
             Self::Line => &[],
         }
     }
@@ -136,6 +149,7 @@ impl PathKind {
             Self::Rose => [&BY_ANGLE[..], &["petals"]].concat(),
             Self::Lissajous => [&BY_ANGLE[..5], &["amplitudes", "frequencies", "phase"]].concat(),
             Self::Line => vec!["to", "displacement"],
+            Self::Fourier => vec!["cosines", "sines", "center"],
         };
         known.extend(["time_law", "turn"]);
         known
@@ -154,6 +168,8 @@ impl PathSpec {
             amplitudes: None,
             frequencies: None,
             phase: None,
+            cosines: None,
+            sines: None,
             plane: None,
             rotation: None,
             from: None,
@@ -186,7 +202,13 @@ impl PathSpec {
             let numbers = list.unwrap_or_default().iter().enumerate();
             numbers.map(move |(index, number)| (key, Some(index), number))
         });
-        single.chain(entries)
+        let triples = [("cosines", &self.cosines), ("sines", &self.sines)];
+        let triples = triples.into_iter().flat_map(|(key, vectors)| {
+            let vectors = vectors.iter().flatten().enumerate();
+            vectors
+                .flat_map(move |(index, vector)| vector.iter().map(move |number| (key, Some(index), number)))
+        });
+        single.chain(entries).chain(triples)
     }
 
     /// Returns the names of the parameters that are given.
@@ -199,6 +221,8 @@ impl PathSpec {
             ("amplitudes", self.amplitudes.is_some()),
             ("frequencies", self.frequencies.is_some()),
             ("phase", self.phase.is_some()),
+            ("cosines", self.cosines.is_some()),
+            ("sines", self.sines.is_some()),
             ("plane", self.plane.is_some()),
             ("rotation", self.rotation.is_some()),
             ("from", self.from.is_some()),

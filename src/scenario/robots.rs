@@ -1,6 +1,8 @@
 //! Which robot a scenario means: one of the embedded ones, or a file.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::{LazyLock, Mutex, PoisonError};
 
 use super::document::read_bounded;
 use super::error::{ErrorKind, Place, ScenarioError, suggestion};
@@ -14,16 +16,21 @@ pub enum RobotSource {
     Embedded(String),
     /// A file: URDF, or a Denavit-Hartenberg table in TOML.
     File(PathBuf),
+    /// The URDF itself, written into the scenario: a scenario made by a program is one file then.
+    Text(String),
 }
 
 impl RobotSource {
-    /// Returns what `reference` means: an embedded robot's name, or a path that is tried from `folder` and then
-    /// from the working directory.
+    /// Returns what `reference` means: an embedded robot's name, a path that is tried from `folder` and then
+    /// from the working directory, or URDF text, which begins with `<`.
     ///
     /// # Errors
     /// [`ScenarioError`] of kind [`ErrorKind::Scenario`] for a name (no path, no extension) that is neither, with
     /// the nearest names, of kind [`ErrorKind::File`] for a path to a file that is in neither place.
     pub fn find(reference: &str, folder: Option<&Path>) -> Result<Self, ScenarioError> {
+        if reference.trim_start().starts_with('<') {
+            return Ok(Self::Text(reference.to_owned()));
+        }
         let names = embedded::names();
         if names.contains(&reference) {
             return Ok(Self::Embedded(reference.to_owned()));
@@ -44,6 +51,7 @@ impl RobotSource {
         match self {
             Self::Embedded(name) => name.clone(),
             Self::File(path) => path.display().to_string(),
+            Self::Text(_) => "in the scenario".to_owned(),
         }
     }
 
@@ -54,11 +62,9 @@ impl RobotSource {
     pub fn read(&self, options: &UrdfOptions) -> Result<Robot, ReadError> {
         match self {
             Self::File(path) => Robot::from_file(path, options),
-            Self::Embedded(name) => {
-                let text = embedded::text(name).unwrap_or_default();
-                Robot::from_urdf_with(text, options)
-                    .map_err(|error| ReadError::Urdf { path: name.into(), error })
-            }
+            Self::Embedded(name) => read_embedded(name, options),
+            Self::Text(text) => Robot::from_urdf_with(text, options)
+                .map_err(|error| ReadError::Urdf { path: self.label().into(), error }),
         }
     }
 
@@ -66,6 +72,7 @@ impl RobotSource {
     pub fn place(&self, line: usize, column: usize) -> Place {
         let text = match self {
             Self::Embedded(name) => embedded::text(name).unwrap_or_default().to_owned(),
+            Self::Text(text) => text.clone(),
             Self::File(path) => {
                 let bytes = read_bounded(path, MAX_BYTES as u64).ok().flatten().unwrap_or_default();
                 String::from_utf8(bytes).unwrap_or_default()
@@ -89,4 +96,22 @@ impl RobotSource {
         let place = self.place(first.line, first.column);
         ScenarioError::new(ErrorKind::Robot, format!("{}{more}", first.message)).or_placed(Some(place))
     }
+}
+
+/// Returns an embedded robot. Robots do not change, so each is read once: a sweep asks for one thousands of times.
+fn read_embedded(name: &str, options: &UrdfOptions) -> Result<Robot, ReadError> {
+    static READ: LazyLock<Mutex<HashMap<String, Robot>>> = LazyLock::new(Mutex::default);
+    // Whoever panicked while holding the lock left a map that is whole.
+    let known = || READ.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_default = *options == UrdfOptions::default();
+    if let Some(robot) = known().get(name).filter(|_| is_default) {
+        return Ok(robot.clone());
+    }
+    let text = embedded::text(name).unwrap_or_default();
+    let robot =
+        Robot::from_urdf_with(text, options).map_err(|error| ReadError::Urdf { path: name.into(), error })?;
+    if is_default {
+        known().insert(name.to_owned(), robot.clone());
+    }
+    Ok(robot)
 }

@@ -1,9 +1,12 @@
 //! From the errors of a ladder to slopes, and from slopes to a verdict.
 
+use super::fit::Fit;
 use std::fmt;
 
 /// Slopes that differ by more than this are not those of one power law.
 const UNLIKE: f64 = 0.5;
+/// Without a claim, a slope below this is no order.
+const LEAST_ORDER: f64 = 0.5;
 
 /// What a study asks of its errors before it speaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +59,32 @@ impl Mark {
 
 /// Why a study does not decide.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Undecidable {
+    /// The ladder itself is too short.
+    ShortLadder {
+        /// How many rungs it has.
+        rungs: usize,
+    },
+    /// Most runs stopped before their end.
+    Stopped {
+        /// How many.
+        stopped: usize,
+        /// Of how many.
+        rungs: usize,
+    },
+    /// The errors lie at the floor: the gaps are finer than the numbers can show.
+    AtFloor {
+        /// The floor.
+        floor: f64,
+    },
+    /// There is nothing to compare with: the reference does not converge.
+    NoReference,
+    /// Nothing was claimed, and the errors do not fall.
+    NotFalling {
+        /// The slope of the finest pair.
+        finest: f64,
+    },
     /// Two pairs of neighbouring rungs are needed.
     TooFewRungs {
         /// How many neighbouring rungs could be used.
@@ -138,13 +166,41 @@ impl fmt::Display for Verdict {
             Self::Exceeded { claimed, slope } => {
                 write!(f, "order {claimed} exceeded: the finest pair has slope {slope:.3}")
             }
-            Self::Undecidable(Undecidable::TooFewRungs { usable }) => write!(
+            Self::Undecidable(why) => write!(f, "not decidable here: {why}"),
+        }
+    }
+}
+
+impl fmt::Display for Undecidable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ShortLadder { rungs } => {
+                let gaps = if *rungs == 1 { "one gap" } else { "two gaps" };
+                write!(f, "{gaps} can not show whether a slope has settled; give three or more")
+            }
+            Self::Stopped { stopped, rungs } => {
+                write!(
+                    f,
+                    "{stopped} of {rungs} runs stopped before their end, and a stopped run has no error"
+                )
+            }
+            Self::AtFloor { floor } => write!(
                 f,
-                "not decidable here: {usable} neighbouring rungs lie well above the round-off floor, three are needed; use coarser gaps, closer together"
+                "all errors lie within reach of the floor of {floor:.1e}, what rounding and the reference leave uncertain; use coarser gaps"
             ),
-            Self::Undecidable(Undecidable::Unsettled { before, finest }) => write!(
+            Self::NoReference => {
+                f.write_str("the reference does not converge, so there is nothing to compare with")
+            }
+            Self::NotFalling { finest } => {
+                write!(f, "the errors do not fall: the finest pair has slope {finest:.3}")
+            }
+            Self::TooFewRungs { usable } => write!(
                 f,
-                "not decidable here: the slopes of the finest two pairs, {before:.3} and {finest:.3}, are still moving; use finer gaps"
+                "{usable} neighbouring rungs lie well above the round-off floor, three are needed; use coarser gaps, closer together"
+            ),
+            Self::Unsettled { before, finest } => write!(
+                f,
+                "the slopes of the finest two pairs, {before:.3} and {finest:.3}, are still moving; use finer gaps"
             ),
         }
     }
@@ -161,6 +217,8 @@ pub struct Convergence {
     pub marks: Vec<Mark>,
     /// The round-off (or the uncertainty of the reference) below which no error can be seen.
     pub floor: f64,
+    /// The power law through the asymptotic window: the rungs that are used, where there are three.
+    pub fit: Option<Fit>,
     /// What follows.
     pub verdict: Verdict,
 }
@@ -198,21 +256,47 @@ impl Convergence {
         let mut marks: Vec<Mark> = errors.iter().map(|&error| mark(error, least)).collect();
         let (from, to) = finest_usable(&marks);
         let verdict = if to - from < 3 {
-            Verdict::Undecidable(Undecidable::TooFewRungs { usable: to - from })
+            Verdict::Undecidable(shortage(&marks, floor, to - from))
         } else {
             let (before, finest) = (slopes[to - 3], slopes[to - 2]);
-            let claimed = claimed.unwrap_or(finest.round().max(0.0) as usize);
             let ratio = sigmas[to - 1] / sigmas[to - 2];
             name_pre_asymptotic(&mut marks[..to - 2], &slopes[..to - 2], finest);
-            verdict(claimed, before, finest, ratio, criteria)
+            match claimed.or_else(|| (finest >= LEAST_ORDER).then(|| finest.round() as usize)) {
+                Some(claimed) => verdict(claimed, before, finest, ratio, criteria),
+                None => Verdict::Undecidable(Undecidable::NotFalling { finest }),
+            }
         };
-        Self { errors: errors.to_vec(), slopes, marks, floor, verdict }
+        let (from, to) = finest_usable(&marks);
+        let fit = Fit::of(sigmas, errors, from, to);
+        Self { errors: errors.to_vec(), slopes, marks, floor, fit, verdict }
+    }
+
+    /// The order seen: the slope of the finest pair that counts, where the study decides anything.
+    pub fn order(&self) -> Option<f64> {
+        self.verdict.is_decided().then(|| self.finest_slope()).flatten()
     }
 
     /// The slope of the finest pair that counts.
     pub fn finest_slope(&self) -> Option<f64> {
         let (from, to) = finest_usable(&self.marks);
         (to - from >= 2).then(|| self.slopes[to - 2])
+    }
+}
+
+/// What keeps a study from having three neighbouring rungs.
+fn shortage(marks: &[Mark], floor: f64, usable: usize) -> Undecidable {
+    let count = |what: Mark| marks.iter().filter(|&&mark| mark == what).count();
+    let (rungs, stopped) = (marks.len(), count(Mark::Stopped));
+    if !floor.is_finite() {
+        Undecidable::NoReference
+    } else if rungs < 3 {
+        Undecidable::ShortLadder { rungs }
+    } else if stopped > rungs / 2 {
+        Undecidable::Stopped { stopped, rungs }
+    } else if count(Mark::NearFloor) + stopped == rungs {
+        Undecidable::AtFloor { floor }
+    } else {
+        Undecidable::TooFewRungs { usable }
     }
 }
 
@@ -304,15 +388,31 @@ mod tests {
     }
 
     #[test]
+    fn the_fit_uses_the_asymptotic_window_alone() {
+        let seen = judge(4, |sigma| sigma.powi(4) * (1.0 + (40.0 * sigma).powi(3)) * 1e-3 + 1e-15);
+        let fit = seen.fit.unwrap();
+        assert!(fit.from >= 1 && fit.to <= 6, "{fit:?}");
+        let all = Fit::of(&[0.1, 0.05, 0.025, 0.0125], &seen.errors[..4], 0, 4).unwrap();
+        assert!((fit.order - 4.0).abs() < (all.order - 4.0).abs() && fit.standard_error < all.standard_error);
+    }
+
+    #[test]
     fn too_few_rungs_are_no_reason_to_guess() {
         let floor = judge(4, |_| 3e-15);
-        assert_eq!(floor.verdict, Verdict::Undecidable(Undecidable::TooFewRungs { usable: 0 }));
+        assert_eq!(floor.verdict, Verdict::Undecidable(Undecidable::AtFloor { floor: 1e-15 }));
         assert!(floor.marks.iter().all(|&mark| mark == Mark::NearFloor));
         let stopped = judge(4, |sigma| if sigma < 0.02 { f64::NAN } else { sigma });
         assert!(!stopped.verdict.is_decided() || stopped.verdict.is_not_reached());
         let one = Convergence::judge(&[0.1], &[0.1], 0.0, None, &Criteria::default());
-        assert_eq!(one.verdict, Verdict::Undecidable(Undecidable::TooFewRungs { usable: 1 }));
-        assert!(one.slopes.is_empty());
+        assert_eq!(one.verdict, Verdict::Undecidable(Undecidable::ShortLadder { rungs: 1 }));
+        assert!(one.slopes.is_empty() && one.fit.is_none());
+        let lost = judge(4, |_| f64::NAN);
+        assert_eq!(lost.verdict, Verdict::Undecidable(Undecidable::Stopped { stopped: 7, rungs: 7 }));
+        let two = judge(4, |sigma| if sigma > 0.04 { 1e-3 * sigma.powi(4) } else { 0.0 });
+        assert_eq!(two.verdict, Verdict::Undecidable(Undecidable::TooFewRungs { usable: 2 }));
+        let adrift =
+            Convergence::judge(&[0.1, 0.05, 0.025], &[1.0; 3], f64::INFINITY, Some(4), &Criteria::default());
+        assert_eq!(adrift.verdict, Verdict::Undecidable(Undecidable::NoReference));
     }
 
     #[test]
@@ -322,6 +422,10 @@ mod tests {
         assert!(matches!(seen.verdict, Verdict::Confirmed { order: 2, .. }));
         let wild = Convergence::judge(&sigmas, &[1e-2, 1e-4, 5e-5], 0.0, None, &Criteria::default());
         assert!(!wild.verdict.is_confirmed());
+        for errors in [[1e-2; 3], [1e-2, 2e-2, 4e-2]] {
+            let stuck = Convergence::judge(&sigmas, &errors, 0.0, None, &Criteria::default());
+            assert!(matches!(stuck.verdict, Verdict::Undecidable(Undecidable::NotFalling { .. })));
+        }
     }
 
     #[test]

@@ -135,9 +135,14 @@ impl Ladder {
         self.rungs().map(|rung| rung.sigma).collect()
     }
 
-    /// The coarsest run with a sample at every time at which some rung has one.
-    pub fn common(&self) -> Rung {
-        self.rung(self.steps.iter().fold(1, |common, steps| common.lcm(steps)))
+    /// The coarsest run with a sample at every time at which some rung has one; nothing where it would have more than
+    /// 2^40 steps.
+    pub fn common(&self) -> Option<Rung> {
+        const MOST: usize = 1 << 40;
+        let join = |common: usize, steps: &usize| {
+            (common / common.gcd(steps)).checked_mul(*steps).filter(|&common| common <= MOST)
+        };
+        self.steps.iter().try_fold(1, join).map(|steps| self.rung(steps))
     }
 
     /// The run of that many steps over the same duration.
@@ -182,6 +187,8 @@ mod tests {
     fn half_octaves_meet_on_a_common_grid() {
         let ladder = Ladder::half_octaves(2.0, 16, 5).unwrap();
         assert_eq!(ladder.rungs().map(|rung| rung.steps).collect::<Vec<_>>(), [16, 24, 32, 48, 64]);
-        assert_eq!(ladder.common().steps, 192);
+        assert_eq!(ladder.common().unwrap().steps, 192);
+        let primes = [99_991, 99_989, 99_971, 99_961].into_iter().rev();
+        assert_eq!(Ladder::from_steps(2.0, primes).unwrap().common(), None);
     }
 }

@@ -2,16 +2,21 @@
 
 use super::convergence::{Convergence, Criteria};
 use super::ladder::{Ladder, Rung};
+use super::measure::Measure;
 use super::problem::Problem;
 use super::round_off::jitter;
 use super::samples::{Errors, Samples};
 use crate::formula::Formula;
 use crate::integrate::{IntegrateError, Multistep, Ode, Starter, Status};
 use crate::planner::{ArmPlan, Plan, Planner};
+use nalgebra::Vector6;
 use std::fmt;
 
 /// A jitter that still falls by this much at each of the last two pairs of rungs is signal, not round-off.
 const STILL_FALLING: f64 = 0.6;
+
+/// A grid with a sample at every time of every rung may have this many times the samples of the finest rung.
+const MOST_COMMON: f64 = 16.0;
 
 /// The orders that a study is to confirm; where none is claimed, the nearest whole number stands in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,10 +48,20 @@ pub struct OrderReport {
     pub rungs: Vec<Rung>,
     /// The solution of an ODE, largest error over the whole run.
     pub formula: Option<Convergence>,
+    /// The solution of an ODE, largest error over the second half of the run.
+    pub formula_steady: Option<Convergence>,
+    /// The solution of an ODE, error of the last sample.
+    pub formula_end_point: Option<Convergence>,
+    /// The solution of an ODE, root of the mean square over the run.
+    pub formula_mean_square: Option<Convergence>,
     /// The task error, largest over the whole run and all arms, start-up included.
     pub task_transient: Option<Convergence>,
     /// The task error, largest over the second half of the run.
     pub task_steady: Option<Convergence>,
+    /// The task error of the last sample.
+    pub task_end_point: Option<Convergence>,
+    /// The task error, root of the mean square over the run of the worst arm.
+    pub task_mean_square: Option<Convergence>,
     /// The joint positions against a reference run on the same grid points, largest over the whole run.
     pub joint: Option<Convergence>,
     /// Runs that stopped, and why.
@@ -54,28 +69,79 @@ pub struct OrderReport {
 }
 
 impl OrderReport {
+    pub(super) fn empty(ladder: &Ladder) -> Self {
+        Self {
+            rungs: ladder.rungs().collect(),
+            formula: None,
+            formula_steady: None,
+            formula_end_point: None,
+            formula_mean_square: None,
+            task_transient: None,
+            task_steady: None,
+            task_end_point: None,
+            task_mean_square: None,
+            joint: None,
+            notes: Vec::new(),
+        }
+    }
+
     /// The sampling gaps \[s\], coarsest first.
     pub fn sigmas(&self) -> Vec<f64> {
         self.rungs.iter().map(|rung| rung.sigma).collect()
     }
 
-    /// The kinds of error studied, by name.
+    /// What was seen by a measure: of the task error of a plan, or of the solution of an ODE.
+    pub fn measured(&self, measure: Measure) -> Option<&Convergence> {
+        let (task, formula) = match measure {
+            Measure::Maximum => (&self.task_transient, &self.formula),
+            Measure::Steady => (&self.task_steady, &self.formula_steady),
+            Measure::EndPoint => (&self.task_end_point, &self.formula_end_point),
+            Measure::MeanSquare => (&self.task_mean_square, &self.formula_mean_square),
+        };
+        task.as_ref().or(formula.as_ref())
+    }
+
+    /// The kinds of error studied, by key.
     pub fn parts(&self) -> impl Iterator<Item = (&'static str, &Convergence)> {
         [
             ("formula", &self.formula),
-            ("task, whole run", &self.task_transient),
-            ("task, steady", &self.task_steady),
-            ("joints", &self.joint),
+            ("formula_steady", &self.formula_steady),
+            ("formula_end_point", &self.formula_end_point),
+            ("formula_mean_square", &self.formula_mean_square),
+            ("task_transient", &self.task_transient),
+            ("task_steady", &self.task_steady),
+            ("task_end_point", &self.task_end_point),
+            ("task_mean_square", &self.task_mean_square),
+            ("joint", &self.joint),
         ]
         .into_iter()
-        .filter_map(|(name, part)| Some((name, part.as_ref()?)))
+        .filter_map(|(key, part)| Some((key, part.as_ref()?)))
+    }
+}
+
+/// What a key of [`OrderReport::parts`] means, in words.
+fn words(key: &str) -> &'static str {
+    match key {
+        "formula" => "solution, largest over the whole run",
+        "formula_steady" => "solution, largest over the second half",
+        "formula_end_point" => "solution, last sample",
+        "formula_mean_square" => "solution, root mean square",
+        "task_transient" => "task error, largest over the whole run",
+        "task_steady" => "task error, largest over the second half",
+        "task_end_point" => "task error, last sample",
+        "task_mean_square" => "task error, root mean square",
+        _ => "joint positions, largest over the whole run",
     }
 }
 
 impl fmt::Display for OrderReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (name, part) in self.parts() {
-            writeln!(f, "{name} (floor {:.1e}): {}", part.floor, part.verdict)?;
+        for (key, part) in self.parts() {
+            writeln!(f, "{} (floor {:.1e}): {}", words(key), part.floor, part.verdict)?;
+            if let Some(fit) = &part.fit {
+                let (order, width, count) = (fit.order, fit.half_width, fit.to - fit.from);
+                writeln!(f, "    fitted to {count} rungs: {order:.3} +- {width:.3} (95 %)")?;
+            }
             for (i, rung) in self.rungs.iter().enumerate() {
                 let slope = i.checked_sub(1).map(|pair| part.slopes[pair]).filter(|slope| slope.is_finite());
                 let slope = slope.map_or_else(String::new, |slope| format!("{slope:.3}"));
@@ -133,7 +199,7 @@ impl OrderStudy {
     /// # Errors
     /// What the closure returns.
     pub fn of_planner<E>(&self, planner: impl Fn(f64) -> Result<Planner, E>) -> Result<OrderReport, E> {
-        let mut report = self.empty();
+        let mut report = OrderReport::empty(&self.ladder);
         let mut errors = Vec::new();
         for rung in self.ladder.rungs() {
             let plan = run(&planner, rung, &mut report.notes)?;
@@ -154,10 +220,19 @@ impl OrderStudy {
         planner: impl Fn(f64) -> Result<Planner, E>,
         reference: impl Fn(f64) -> Result<Planner, E>,
     ) -> Result<OrderReport, E> {
-        let mut report = self.empty();
-        let common = self.ladder.common();
-        let coarse = run(&reference, common, &mut report.notes)?;
-        let fine = run(&reference, self.ladder.rung(2 * common.steps), &mut report.notes)?;
+        let mut report = OrderReport::empty(&self.ladder);
+        let common =
+            self.ladder.common().filter(|common| common.steps as f64 <= MOST_COMMON * self.longest());
+        let (coarse, fine) = match common {
+            Some(common) => (
+                run(&reference, common, &mut report.notes)?,
+                run(&reference, self.ladder.rung(2 * common.steps), &mut report.notes)?,
+            ),
+            None => {
+                report.notes.push("the joints are not studied: the gaps of the ladder have no common grid of moderate size; choose gaps in simple ratios".to_owned());
+                (None, None)
+            }
+        };
         let (mut errors, mut joint) = (Vec::new(), Vec::new());
         for rung in self.ladder.rungs() {
             let plan = run(&planner, rung, &mut report.notes)?;
@@ -166,7 +241,8 @@ impl OrderStudy {
             joint.push(both.map_or(f64::NAN, |(plan, reference)| joint_error(plan, reference)));
         }
         self.judge_task(&mut report, &errors);
-        let between = coarse.zip(fine).map_or(0.0, |(coarse, fine)| joint_error(&coarse, &fine));
+        // Without a reference nothing can be said, whatever the floor.
+        let between = coarse.zip(fine).map_or(f64::INFINITY, |(coarse, fine)| joint_error(&coarse, &fine));
         let scale = errors.iter().map(|errors| errors.scale).fold(1.0, f64::max);
         let floor = between.max(f64::EPSILON * scale * self.longest().sqrt());
         report.joint = Some(self.judge(&joint, floor, self.orders.joint));
@@ -193,7 +269,7 @@ impl OrderStudy {
         exact: impl Fn(f64, &mut [f64]),
         run: impl Fn(Rung) -> Result<Samples, E>,
     ) -> Result<OrderReport, E> {
-        let mut report = self.empty();
+        let mut report = OrderReport::empty(&self.ladder);
         let mut errors = Vec::new();
         for rung in self.ladder.rungs() {
             let samples = run(rung)?;
@@ -209,32 +285,49 @@ impl OrderStudy {
                 Errors::NONE
             });
         }
-        let whole: Vec<f64> = errors.iter().map(|errors| errors.transient).collect();
-        // Rounding errors of single steps add up like a random walk.
-        let floor = floor(&errors) * self.longest().sqrt();
-        report.formula = Some(self.judge(&whole, floor, self.orders.formula));
+        self.judge_formula(&mut report, &errors, f64::EPSILON, 0.0);
         Ok(report)
     }
 
-    fn empty(&self) -> OrderReport {
-        OrderReport {
-            rungs: self.ladder.rungs().collect(),
-            formula: None,
-            task_transient: None,
-            task_steady: None,
-            joint: None,
-            notes: Vec::new(),
-        }
+    pub(super) fn ladder(&self) -> &Ladder {
+        &self.ladder
     }
 
     fn judge_task(&self, report: &mut OrderReport, errors: &[Errors]) {
-        let floor = floor(errors);
-        let part = |pick: fn(&Errors) -> f64| {
-            let picked: Vec<f64> = errors.iter().map(pick).collect();
-            Some(self.judge(&picked, floor, self.orders.task))
-        };
-        report.task_transient = part(|errors| errors.transient);
-        report.task_steady = part(|errors| errors.steady);
+        let floor = floor(errors, f64::EPSILON);
+        let part = |measure| Some(self.judge_measured(errors, measure, floor, self.orders.task));
+        report.task_transient = part(Measure::Maximum);
+        report.task_steady = part(Measure::Steady);
+        report.task_end_point = part(Measure::EndPoint);
+        report.task_mean_square = part(Measure::MeanSquare);
+    }
+
+    /// Judges the errors of solutions of an ODE in numbers of a resolution, against a reference of an uncertainty.
+    pub(super) fn judge_formula(
+        &self,
+        report: &mut OrderReport,
+        errors: &[Errors],
+        resolution: f64,
+        uncertainty: f64,
+    ) {
+        // Rounding errors of single steps add up like a random walk.
+        let floor = (floor(errors, resolution) * self.longest().sqrt()).max(uncertainty);
+        let part = |measure| Some(self.judge_measured(errors, measure, floor, self.orders.formula));
+        report.formula = part(Measure::Maximum);
+        report.formula_steady = part(Measure::Steady);
+        report.formula_end_point = part(Measure::EndPoint);
+        report.formula_mean_square = part(Measure::MeanSquare);
+    }
+
+    fn judge_measured(
+        &self,
+        errors: &[Errors],
+        measure: Measure,
+        floor: f64,
+        claimed: Option<usize>,
+    ) -> Convergence {
+        let picked: Vec<f64> = errors.iter().map(|errors| errors.measured(measure)).collect();
+        self.judge(&picked, floor, claimed)
     }
 
     fn judge(&self, errors: &[f64], floor: f64, claimed: Option<usize>) -> Convergence {
@@ -274,9 +367,15 @@ fn task_errors(plan: &Plan) -> Errors {
         let series = |row: usize| steady.iter().map(|error| error[row]).collect::<Vec<_>>();
         (0..6).filter_map(|row| jitter(&series(row))).fold(0.0, f64::max)
     };
+    let mean_square = |arm: &ArmPlan| {
+        let sum: f64 = arm.errors.iter().map(Vector6::norm_squared).sum();
+        (sum / arm.errors.len().max(1) as f64).sqrt()
+    };
     Errors {
         transient: most(|arm| arm.max_error),
         steady: most(|arm| arm.max_error_steady),
+        end_point: most(|arm| arm.errors.last().map_or(f64::NAN, Vector6::norm)),
+        mean_square: most(mean_square),
         jitter: most(rough),
         scale: most(|arm| arm.positions.iter().fold(1.0, |most: f64, q| most.max(q.abs()))),
     }
@@ -298,9 +397,9 @@ fn joint_error(plan: &Plan, reference: &Plan) -> f64 {
 /// The round-off that the finest run shows, or that its numbers can not go below.
 ///
 /// Rough errors can be signal too, of parasitic roots for instance. That falls from rung to rung, which round-off does not.
-fn floor(errors: &[Errors]) -> f64 {
+fn floor(errors: &[Errors], resolution: f64) -> f64 {
     let run: Vec<&Errors> = errors.iter().filter(|errors| errors.transient.is_finite()).collect();
-    let least = run.iter().map(|errors| errors.scale).fold(1.0, f64::max) * 2.0 * f64::EPSILON;
+    let least = run.iter().map(|errors| errors.scale).fold(1.0, f64::max) * 2.0 * resolution;
     let last = &run[run.len().saturating_sub(3)..];
     let falls = last.windows(2).all(|pair| pair[1].jitter < STILL_FALLING * pair[0].jitter);
     match last.last() {

@@ -1,5 +1,6 @@
 //! The samples of a run, and its errors against an exact solution.
 
+use super::measure::Measure;
 use super::round_off::jitter;
 
 /// The states of a run on a uniform grid, first sample first: `states[n * dimension + i]`.
@@ -30,6 +31,10 @@ pub struct Errors {
     pub transient: f64,
     /// The largest over its second half, where the start is forgotten.
     pub steady: f64,
+    /// The largest entry at the last sample.
+    pub end_point: f64,
+    /// The root of the mean square over the samples.
+    pub mean_square: f64,
     /// How rough the errors are from sample to sample; see [`jitter`].
     pub jitter: f64,
     /// The largest entry that was rounded to get there.
@@ -38,34 +43,67 @@ pub struct Errors {
 
 impl Errors {
     /// A run that has none to show, because it stopped.
-    pub const NONE: Self = Self { transient: f64::NAN, steady: f64::NAN, jitter: 0.0, scale: 1.0 };
+    pub const NONE: Self = Self {
+        transient: f64::NAN,
+        steady: f64::NAN,
+        end_point: f64::NAN,
+        mean_square: f64::NAN,
+        jitter: 0.0,
+        scale: 1.0,
+    };
+
+    /// The number by which a measure sums them up.
+    pub fn measured(&self, measure: Measure) -> f64 {
+        match measure {
+            Measure::Maximum => self.transient,
+            Measure::Steady => self.steady,
+            Measure::EndPoint => self.end_point,
+            Measure::MeanSquare => self.mean_square,
+        }
+    }
 
     /// The errors of `samples` against `exact(t, state)` at gap `sigma`, largest entry of each sample.
     pub(super) fn against(samples: &Samples, sigma: f64, exact: impl Fn(f64, &mut [f64])) -> Self {
-        let steps = samples.steps();
-        let mut errors = Self { transient: 0.0, steady: 0.0, jitter: 0.0, scale: 0.0 };
         let mut truth = vec![0.0; samples.dimension];
-        let mut series = vec![Vec::with_capacity(steps / 2 + 1); samples.dimension];
-        for n in 0..=steps {
+        let mut differences = Vec::with_capacity(samples.states.len());
+        let mut scale = 0.0_f64;
+        for n in 0..=samples.steps() {
             exact(n as f64 * sigma, &mut truth);
-            for (i, (state, truth)) in samples.state(n).iter().zip(&truth).enumerate() {
-                errors.observe(state - truth, 2 * n >= steps);
-                errors.scale = errors.scale.max(truth.abs());
-                if 2 * n >= steps {
-                    series[i].push(state - truth);
-                }
-            }
+            scale = truth.iter().fold(scale, |most, entry| most.max(entry.abs()));
+            differences.extend(samples.state(n).iter().zip(&truth).map(|(state, truth)| state - truth));
         }
-        errors.jitter = series.iter().filter_map(|series| jitter(series)).fold(0.0, f64::max);
-        errors
+        Self::of_differences(&differences, samples.dimension, scale)
     }
 
-    fn observe(&mut self, error: f64, steady: bool) {
-        // Written so that NaN stays.
-        let larger = |most: f64, error: f64| if error.abs() <= most { most } else { error.abs() };
-        self.transient = larger(self.transient, error);
-        if steady {
-            self.steady = larger(self.steady, error);
+    /// The errors whose entries stand one sample after the other; `scale` is the largest entry of the solution.
+    pub(super) fn of_differences(differences: &[f64], dimension: usize, scale: f64) -> Self {
+        let steps = (differences.len() / dimension.max(1)).saturating_sub(1);
+        let mut errors =
+            Self { transient: 0.0, steady: 0.0, end_point: 0.0, mean_square: 0.0, jitter: 0.0, scale };
+        for (n, sample) in differences.chunks_exact(dimension.max(1)).enumerate() {
+            let size = sample.iter().fold(0.0, |most, entry| larger(most, *entry));
+            errors.transient = larger(errors.transient, size);
+            if 2 * n >= steps {
+                errors.steady = larger(errors.steady, size);
+            }
+            errors.end_point = size;
+            errors.mean_square += size * size;
         }
+        errors.mean_square = (errors.mean_square / (steps + 1) as f64).sqrt();
+        let settled = |i: usize| -> Vec<f64> {
+            differences
+                .iter()
+                .skip(steps.div_ceil(2) * dimension + i)
+                .step_by(dimension.max(1))
+                .copied()
+                .collect()
+        };
+        errors.jitter = (0..dimension).filter_map(|i| jitter(&settled(i))).fold(0.0, f64::max);
+        errors
     }
+}
+
+/// The larger size of the two, written so that NaN stays.
+pub(super) fn larger(most: f64, error: f64) -> f64 {
+    if error.abs() <= most || most.is_nan() { most } else { error.abs() }
 }

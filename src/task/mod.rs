@@ -2,14 +2,16 @@
 
 mod curve;
 mod error;
+mod fourier;
 mod motion;
 mod path;
 mod time_law;
 
 pub use curve::{Astroid, Circle, Line, Lissajous, PlanarCurve, Rose, Tricuspid};
 pub use error::TaskKind;
-
-pub(crate) use error::pose_error;
+pub use fourier::{Fourier, Leaning};
 pub use motion::{Motion, Reference};
 pub use path::{Path, PathPoint, Planar, Plane, Turning};
 pub use time_law::{Linear, Quintic, Sin2, Sin2Sin2, TimeLaw};
+
+pub(crate) use error::pose_error;

@@ -146,8 +146,11 @@ impl Figure {
     }
 }
 
-/// Nine digits, without noise about zero.
+/// Nine digits, without noise about zero; very small numbers with their exponent.
 fn number(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-6 {
+        return format!("{value:.6e}");
+    }
     let text = format!("{value:.9}");
     let trimmed = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     if trimmed == "-0" { "0".to_owned() } else { trimmed.to_owned() }

@@ -7,6 +7,7 @@ mod axis;
 #[expect(clippy::module_inception, reason = "the file is named after the one type it holds")]
 mod figure;
 mod formula;
+mod order;
 mod robot;
 mod sheet;
 mod style;
@@ -17,5 +18,6 @@ pub use figure::{Figure, Mark, Shape};
 pub use formula::{
     frequency_figure, locus_figure, pareto_figure, portrait, radius_figure, region_figure, roots_figure,
 };
+pub use order::order_figure;
 pub use robot::robot_figures;
 pub use sheet::sheet;

@@ -4,13 +4,15 @@ use super::{
     ArmCase, FormulaCase, PathCase, TimeLawCase, arms, feedback_steps, formulas, overshooting_steps, paths,
     time_laws,
 };
-use crate::formula::Formula;
+use crate::formula::{Formula, FormulaTable};
 use crate::planner::{Arm, Feedback, Plan, Planner, PlannerError, Start};
 use crate::robot::Chain;
+use crate::scenario::{self, Scenario, StudySpec};
 use crate::study::{Ladder, OrderReport, OrderStudy, Orders, Rung};
 use crate::task::Motion;
 use num_traits::ToPrimitive;
 use proptest::prelude::*;
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// How long every path takes \[s\].
@@ -154,17 +156,58 @@ impl OrderCase {
     }
 }
 
+impl OrderCase {
+    /// The case as a scenario, with its robot and its row inside: `kinstep order` runs what the study runs.
+    pub fn scenario(&self) -> Scenario {
+        let row = self.formula.to_string();
+        let id = self.formula.formula().id().to_owned();
+        let is_builtin = FormulaTable::builtin().get(&id).is_ok();
+        let (h, gain) = match self.feedback {
+            Feedback::Step(h) => (Some(h.into()), None),
+            Feedback::Gain(gain) => (None, Some(gain.into())),
+        };
+        let start = match self.start {
+            Start::Paper => Some(scenario::Start::Paper),
+            Start::Ramp => Some(scenario::Start::Ramp),
+            Start::Rk4 => Some(scenario::Start::Rk4),
+            Start::Rk8 => Some(scenario::Start::Rk8),
+            Start::Sufficient | Start::Given(_) => None,
+        };
+        let steps: Vec<usize> = self.ladder.rungs().map(|rung| rung.steps).collect();
+        let arm = scenario::ArmSpec {
+            name: "arm".to_owned(),
+            robot: self.arm.urdf(),
+            base: "base".to_owned(),
+            tip: "tip".to_owned(),
+            task: self.arm.task,
+            q0: self.arm.q0().into_iter().map(Into::into).collect(),
+            start_pose: None,
+            mount: scenario::Mount::default(),
+            tool: scenario::Mount::default(),
+            calibration: None,
+            lock: BTreeMap::new(),
+            path: self.path.spec(self.smallest_singular_value, self.arm.task, self.time_law),
+        };
+        Scenario {
+            sigma: (DURATION / steps.first().copied().unwrap_or(1) as f64).into(),
+            duration: DURATION.into(),
+            formula: Some(id),
+            start,
+            formulas: if is_builtin { Vec::new() } else { vec![row] },
+            allow_unstable: false,
+            law: scenario::LawSpec { h, gain, ..scenario::LawSpec::default() },
+            study: Some(StudySpec { steps: Some(steps), order: self.orders.task, ..StudySpec::default() }),
+            problem: None,
+            arm: vec![arm],
+        }
+    }
+}
+
+/// A scenario file that does again what the case did.
 impl fmt::Display for OrderCase {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let steps: Vec<usize> = self.ladder.rungs().map(|rung| rung.steps).collect();
-        writeln!(f, "{}", self.formula)?;
-        writeln!(f, "feedback = {:?}, start = {:?}, claimed: {:?}", self.feedback, self.start, self.orders)?;
-        writeln!(
-            f,
-            "path = {:?}, time law = {:?}, duration = {DURATION} s, steps = {steps:?}",
-            self.path, self.time_law
-        )?;
-        write!(f, "{}", self.arm)
+        writeln!(f, "# Save this as case.toml; `kinstep order case.toml` runs it again.")?;
+        f.write_str(&self.scenario().to_toml())
     }
 }
 
@@ -282,4 +325,29 @@ pub fn diverging() -> impl Strategy<Value = UnstableCase> {
             Some(UnstableCase { case, h, radius, steps })
         },
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::ScenarioText;
+    use crate::study::ScenarioStudy;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(12))]
+
+        #[test]
+        fn what_is_printed_runs_again_and_shows_the_same(case in order_at_fixed_step()) {
+            let text = ScenarioText::parse(&case.to_string()).unwrap();
+            let scenario = text.scenario().unwrap();
+            let rows = scenario.formula_rows(None).unwrap();
+            let again = ScenarioStudy::new(&scenario, None, &rows, &[]).unwrap().run().unwrap().remove(0);
+            let first = case.study().unwrap().task_transient.unwrap();
+            prop_assert_eq!(again.seen.verdict.name(), first.verdict.name());
+            // Lengths are rounded once more on the way through the file.
+            for (one, other) in again.seen.errors.iter().zip(&first.errors) {
+                prop_assert!((one / other - 1.0).abs() < 1e-3 || (one - other).abs() < 1e-13, "{} {}", one, other);
+            }
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Strategies for property tests with proptest: random formulas, serial arms, paths, and whole order studies of them.
 //!
 //! Everything is made through the doors that people use (rows as TOML, robots as URDF), shrinks to few joints, small
-//! numbers and round figures, and prints what is needed to build it again.
+//! numbers and round figures; a whole study prints a scenario file, robot and row inside, that does it again.
 //!
 //! ```
 //! use kinstep::study::strategies::order_at_fixed_step;
@@ -10,7 +10,7 @@
 //!
 //! let mut runner = TestRunner::deterministic();
 //! let case = order_at_fixed_step().new_tree(&mut runner).unwrap().current();
-//! println!("{case}"); // the row, the feedback, the path and the URDF
+//! println!("{case}"); // a scenario file for `kinstep order`
 //! let report = case.study()?;
 //! assert!(!report.task_transient.as_ref().is_some_and(|seen| seen.verdict.is_not_reached()), "{case}\n{report}");
 //! # Ok::<(), kinstep::planner::PlannerError>(())

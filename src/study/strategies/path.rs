@@ -1,14 +1,24 @@
 //! Random smooth closed paths and the laws by which time runs along them.
 
+use crate::scenario::{PathKind, PathSpec, Real, TimeLawKind, TurnSpec};
 use crate::task::{
-    Astroid, Circle, Linear, Lissajous, Path, PathPoint, Planar, PlanarCurve, Plane, Quintic, Rose, Sin2,
-    Sin2Sin2, TimeLaw, Tricuspid,
+    Astroid, Circle, Fourier, Leaning, Linear, Lissajous, Path, Planar, PlanarCurve, Plane, Quintic, Rose,
+    Sin2, Sin2Sin2, TaskKind, TimeLaw, Tricuspid,
 };
-use nalgebra::{Rotation3, Unit, Vector3};
+use nalgebra::{Unit, Vector3};
 use proptest::prelude::*;
 use proptest::sample::select;
 use std::f64::consts::TAU;
-use std::fmt;
+
+/// The axis about which tips lean.
+const LEAN_AXIS: [f64; 3] = [1.0, 2.0, 3.0];
+/// The phase of Lissajous figures \[rad\].
+const PHASE: f64 = 0.5;
+
+/// The coefficient of mode `k + 1` \[m\].
+fn coefficient(k: usize, mode: [i8; 3], scale: f64) -> Vector3<f64> {
+    Vector3::from(mode.map(|entry| f64::from(entry) / 10.0)) * scale / ((k + 1) as f64).powi(3)
+}
 
 /// The form of a closed path.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,13 +53,67 @@ pub struct PathCase {
 
 impl PathCase {
     /// The path for an arm whose task Jacobian has that smallest singular value at the start.
-    pub fn path(&self, smallest_singular_value: f64) -> LeaningPath {
-        let unit = self.unit_path();
+    pub fn path(&self, smallest_singular_value: f64) -> Leaning<Box<dyn Path>> {
+        let axis = Unit::new_normalize(Vector3::from(LEAN_AXIS));
+        let lean = self.extent(smallest_singular_value) * f64::from(self.lean);
+        Leaning::new(self.scaled(self.scale(smallest_singular_value)), axis, lean)
+    }
+
+    /// The same path as a scenario writes it.
+    pub fn spec(&self, smallest_singular_value: f64, task: TaskKind, law: TimeLawCase) -> PathSpec {
+        let scale = self.scale(smallest_singular_value);
+        let mut spec = PathSpec::new(self.kind());
+        match &self.shape {
+            Shape::Fourier(modes) => {
+                let vectors = |which: usize| {
+                    let vector = |(k, mode): (usize, &[[i8; 3]; 2])| {
+                        <[f64; 3]>::from(coefficient(k, mode[which], scale)).map(Real::from)
+                    };
+                    modes.iter().enumerate().map(vector).collect()
+                };
+                (spec.cosines, spec.sines) = (Some(vectors(0)), Some(vectors(1)));
+            }
+            Shape::Lissajous(x, y) => {
+                spec.amplitudes = Some([scale.into(), scale.into()]);
+                spec.frequencies = Some([f64::from(*x).into(), f64::from(*y).into()]);
+                spec.phase = Some(PHASE.into());
+            }
+            Shape::Rose(petals) => {
+                (spec.radius, spec.petals) = (Some(scale.into()), Some(f64::from(*petals).into()));
+            }
+            _ => spec.radius = Some(scale.into()),
+        }
+        if !matches!(self.shape, Shape::Fourier(_)) {
+            spec.rotation = Some(f64::from(self.rotation).to_radians().into());
+        }
+        spec.time_law = Some(law.kind());
+        let lean = self.extent(smallest_singular_value) * f64::from(self.lean);
+        spec.turn = (task == TaskKind::Pose && lean > 0.0).then(|| TurnSpec {
+            axis: LEAN_AXIS.map(Real::from),
+            angle: lean.into(),
+            back: true,
+        });
+        spec
+    }
+
+    fn kind(&self) -> PathKind {
+        match self.shape {
+            Shape::Fourier(_) => PathKind::Fourier,
+            Shape::Circle => PathKind::Circle,
+            Shape::Tricuspid => PathKind::Tricuspid,
+            Shape::Astroid => PathKind::Astroid,
+            Shape::Lissajous(..) => PathKind::Lissajous,
+            Shape::Rose(_) => PathKind::Rose,
+        }
+    }
+
+    /// By what the path of unit size is multiplied.
+    fn scale(&self, smallest_singular_value: f64) -> f64 {
+        let unit = self.scaled(1.0);
         let start = unit.point(0.0).position;
         let distance = |k: u32| (unit.point(f64::from(k) / 64.0).position - start).norm();
         let size = (1..64).map(distance).fold(0.0, f64::max);
-        let extent = self.extent(smallest_singular_value);
-        LeaningPath { unit, scale: extent / size, lean: extent * f64::from(self.lean) }
+        self.extent(smallest_singular_value) / size
     }
 
     /// The largest distance from the start \[m\], for an arm with that smallest singular value.
@@ -57,21 +121,26 @@ impl PathCase {
         f64::from(self.extent) / 100.0 * smallest_singular_value
     }
 
-    fn unit_path(&self) -> Box<dyn Path> {
+    fn scaled(&self, scale: f64) -> Box<dyn Path> {
         let planar = |curve: Box<dyn PlanarCurve>| {
             let rotation = f64::from(self.rotation).to_radians();
             Box::new(Planar::new(curve, Plane::Xy, rotation, 0.0, TAU)) as Box<dyn Path>
         };
         match &self.shape {
-            Shape::Fourier(modes) => Box::new(Fourier { modes: modes.clone() }),
-            Shape::Circle => planar(Box::new(Circle { radius: 1.0 })),
-            Shape::Tricuspid => planar(Box::new(Tricuspid { radius: 1.0 })),
-            Shape::Astroid => planar(Box::new(Astroid { radius: 1.0 })),
+            Shape::Fourier(modes) => {
+                let vectors = |which: usize| {
+                    modes.iter().enumerate().map(|(k, mode)| coefficient(k, mode[which], scale)).collect()
+                };
+                Box::new(Fourier { cosines: vectors(0), sines: vectors(1) })
+            }
+            Shape::Circle => planar(Box::new(Circle { radius: scale })),
+            Shape::Tricuspid => planar(Box::new(Tricuspid { radius: scale })),
+            Shape::Astroid => planar(Box::new(Astroid { radius: scale })),
             Shape::Lissajous(x, y) => {
                 let frequencies = [f64::from(*x), f64::from(*y)];
-                planar(Box::new(Lissajous { amplitudes: [1.0, 1.0], frequencies, phase: 0.5 }))
+                planar(Box::new(Lissajous { amplitudes: [scale, scale], frequencies, phase: PHASE }))
             }
-            Shape::Rose(petals) => planar(Box::new(Rose { radius: 1.0, petals: f64::from(*petals) })),
+            Shape::Rose(petals) => planar(Box::new(Rose { radius: scale, petals: f64::from(*petals) })),
         }
     }
 
@@ -81,54 +150,6 @@ impl PathCase {
             Shape::Fourier(modes) => modes.iter().flatten().any(|v| v[0] != 0 || v[1] != 0),
             _ => true,
         }
-    }
-}
-
-/// A path scaled to an arm, leaning over and back about (1, 2, 3) where orientation is asked for.
-pub struct LeaningPath {
-    unit: Box<dyn Path>,
-    scale: f64,
-    lean: f64,
-}
-
-impl fmt::Debug for LeaningPath {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("LeaningPath")
-            .field("scale", &self.scale)
-            .field("lean", &self.lean)
-            .finish_non_exhaustive()
-    }
-}
-
-impl Path for LeaningPath {
-    fn point(&self, u: f64) -> PathPoint {
-        let PathPoint { position, tangent } = self.unit.point(u);
-        PathPoint { position: position * self.scale, tangent: tangent * self.scale }
-    }
-
-    fn turn(&self, u: f64) -> (Rotation3<f64>, Vector3<f64>) {
-        let axis = Unit::new_normalize(Vector3::new(1.0, 2.0, 3.0));
-        let (sine, cosine) = (TAU * u).sin_cos();
-        let angle = 0.5 * self.lean * (1.0 - cosine);
-        (Rotation3::from_axis_angle(&axis, angle), axis.into_inner() * (0.5 * self.lean * TAU * sine))
-    }
-}
-
-struct Fourier {
-    modes: Vec<[[i8; 3]; 2]>,
-}
-
-impl Path for Fourier {
-    fn point(&self, u: f64) -> PathPoint {
-        let mut point = PathPoint { position: Vector3::zeros(), tangent: Vector3::zeros() };
-        for (k, modes) in self.modes.iter().enumerate() {
-            let m = (k + 1) as f64;
-            let [a, b] = modes.map(|v| Vector3::from(v.map(|entry| f64::from(entry) / 10.0)) / m.powi(3));
-            let (sine, cosine) = (TAU * m * u).sin_cos();
-            point.position += a * (cosine - 1.0) + b * sine;
-            point.tangent += (b * cosine - a * sine) * (TAU * m);
-        }
-        point
     }
 }
 
@@ -146,6 +167,15 @@ pub enum TimeLawCase {
 }
 
 impl TimeLawCase {
+    fn kind(self) -> TimeLawKind {
+        match self {
+            Self::Sin2 => TimeLawKind::Sin2,
+            Self::Sin2Sin2 => TimeLawKind::Sin2sin2,
+            Self::Quintic => TimeLawKind::Quintic,
+            Self::Linear => TimeLawKind::Linear,
+        }
+    }
+
     /// The law.
     pub fn law(self) -> Box<dyn TimeLaw> {
         match self {

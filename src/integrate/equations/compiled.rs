@@ -1,0 +1,136 @@
+//! Expressions as lists of operations on a stack, and the field that they make.
+
+use super::parse::{Function, Node};
+use crate::integrate::{Elementary, Field};
+use crate::math::DoubleDouble;
+
+#[derive(Clone, Copy, Debug)]
+enum Operation<T> {
+    Constant(T),
+    Slot(usize),
+    Negate,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    /// To a power, counted in halves.
+    Power(i32),
+    Call(Function),
+}
+
+/// An expression ready to be evaluated.
+#[derive(Clone, Debug)]
+pub(super) struct Compiled<T> {
+    operations: Vec<Operation<T>>,
+}
+
+impl<T: Elementary> Compiled<T> {
+    pub(super) fn of(node: &Node) -> Self {
+        let mut compiled = Self { operations: Vec::new() };
+        compiled.add(node);
+        compiled
+    }
+
+    fn add(&mut self, node: &Node) {
+        let operation = match node {
+            Node::Number(value) => Operation::Constant(T::from_rational(value)),
+            Node::Parameter(value) => Operation::Constant(T::from_extended(DoubleDouble::from(*value))),
+            Node::Pi => Operation::Constant(T::pi()),
+            Node::Slot(slot) => Operation::Slot(*slot),
+            Node::Negative(inside) => self.after(&[inside], Operation::Negate),
+            Node::Sum(a, b) => self.after(&[a, b], Operation::Add),
+            Node::Difference(a, b) => self.after(&[a, b], Operation::Subtract),
+            Node::Product(a, b) => self.after(&[a, b], Operation::Multiply),
+            Node::Quotient(a, b) => self.after(&[a, b], Operation::Divide),
+            Node::Power(base, halves) => self.after(&[base], Operation::Power(*halves)),
+            Node::Call(function, argument) => self.after(&[argument], Operation::Call(*function)),
+        };
+        self.operations.push(operation);
+    }
+
+    fn after(&mut self, arguments: &[&Node], operation: Operation<T>) -> Operation<T> {
+        arguments.iter().for_each(|argument| self.add(argument));
+        operation
+    }
+
+    /// The value where the variables have `values`; the stack keeps its memory between calls.
+    pub(super) fn value(&self, values: &[T], stack: &mut Vec<T>) -> T {
+        stack.clear();
+        for operation in &self.operations {
+            let result = match *operation {
+                Operation::Constant(value) => value,
+                Operation::Slot(slot) => values[slot],
+                Operation::Negate => -pop(stack),
+                Operation::Power(halves) => power(pop(stack), halves),
+                Operation::Call(function) => call(function, pop(stack)),
+                two => {
+                    let (b, a) = (pop(stack), pop(stack));
+                    match two {
+                        Operation::Add => a + b,
+                        Operation::Subtract => a - b,
+                        Operation::Multiply => a * b,
+                        _ => a / b,
+                    }
+                }
+            };
+            stack.push(result);
+        }
+        pop(stack)
+    }
+}
+
+fn pop<T: Elementary>(stack: &mut Vec<T>) -> T {
+    stack.pop().expect("an operation is compiled after its arguments")
+}
+
+fn power<T: Elementary>(base: T, halves: i32) -> T {
+    let mut result = if halves % 2 == 0 { T::one() } else { base.sqrt() };
+    let (mut square, mut rest) = (base, halves.unsigned_abs() / 2);
+    while rest > 0 {
+        if rest % 2 == 1 {
+            result = result * square;
+        }
+        square = square * square;
+        rest /= 2;
+    }
+    if halves < 0 { T::one() / result } else { result }
+}
+
+fn call<T: Elementary>(function: Function, x: T) -> T {
+    match function {
+        Function::Sin => x.sin_cos().0,
+        Function::Cos => x.sin_cos().1,
+        Function::Exp => x.exp(),
+        Function::Ln => x.ln(),
+        Function::Sqrt => x.sqrt(),
+    }
+}
+
+/// The right-hand side of [`Equations`](super::Equations) in numbers of one kind, with the memory that it needs.
+///
+/// Variables stand in the order t, unknowns, definitions.
+#[derive(Clone, Debug)]
+pub struct EquationField<T> {
+    pub(super) dimension: usize,
+    pub(super) definitions: Vec<Compiled<T>>,
+    pub(super) derivatives: Vec<Compiled<T>>,
+    pub(super) values: Vec<T>,
+    pub(super) stack: Vec<T>,
+}
+
+impl<T: Elementary> Field<T> for EquationField<T> {
+    fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    fn evaluate(&mut self, t: T, x: &[T], f: &mut [T], _g: &mut [T]) {
+        self.values[0] = t;
+        self.values[1..=self.dimension].copy_from_slice(x);
+        for (k, definition) in self.definitions.iter().enumerate() {
+            self.values[1 + self.dimension + k] = definition.value(&self.values, &mut self.stack);
+        }
+        for (derivative, out) in self.derivatives.iter().zip(f) {
+            *out = derivative.value(&self.values, &mut self.stack);
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! Initial value problems written as text: `x' = y`, in doubles or with 32 digits.
+
+mod compiled;
+mod parse;
+mod problem;
+
+pub use compiled::EquationField;
+pub use problem::{EquationError, EquationText, Equations};
