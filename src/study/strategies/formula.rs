@@ -33,6 +33,12 @@ impl FormulaCase {
         &self.formula
     }
 
+    /// The row as text with one order more than it has: everything that reads rows has to refuse it.
+    pub fn lying_row(&self) -> String {
+        let order = self.formula.order();
+        self.to_string().replace(&format!("order = {order}\n"), &format!("order = {}\n", order + 1))
+    }
+
     fn is_for_control(&self) -> bool {
         let formula = &self.formula;
         formula.order() <= HIGHEST_ORDER && formula.is_explicit() && formula.is_strictly_zero_stable()
@@ -80,6 +86,19 @@ pub fn adams_like() -> impl Strategy<Value = FormulaCase> + Clone {
         let gamma = split.then(|| (0..alpha.len()).map(newest).collect());
         FormulaCase::of("random-adams-like", Coefficients::General { alpha, beta, gamma })
             .filter(FormulaCase::is_for_control)
+    })
+}
+
+/// Formulas like [`adams_like`] that are not zero-stable: rho has one more real root outside the circle, between 11/10 and 2, or a
+/// double one at -1. They declare it honestly; it is for whatever runs them to refuse.
+pub fn unstable_formulas() -> impl Strategy<Value = FormulaCase> + Clone {
+    let real = prop::collection::vec(-7_i64..=7, 0..3);
+    let bad = prop_oneof![(11_i64..=20).prop_map(|r| vec![r]), Just(vec![-10, -10])];
+    (real, bad).prop_filter_map("a formula of order up to six", |(real, bad)| {
+        let alpha = alpha_of_roots(&[real, bad].concat(), &[]);
+        let beta = explicit_beta(&alpha);
+        FormulaCase::of("random-unstable", Coefficients::General { alpha, beta, gamma: None })
+            .filter(|case| case.formula.order() <= HIGHEST_ORDER && !case.formula.is_zero_stable())
     })
 }
 
@@ -161,6 +180,14 @@ mod tests {
         fn formulas_made_from_roots_have_the_order_of_their_steps(case in adams_like()) {
             prop_assert!(case.formula().order() >= case.formula().steps(), "{}", case);
             prop_assert!(case.formula().is_strictly_zero_stable());
+        }
+
+        #[test]
+        fn bad_formulas_are_refused_by_whatever_would_run_them(case in unstable_formulas(), good in formulas()) {
+            prop_assert!(case.formula().runnable().is_err());
+            prop_assert!(good.formula().runnable().is_ok());
+            prop_assert!(FormulaTable::from_toml(&good.to_string()).is_ok());
+            prop_assert!(FormulaTable::from_toml(&good.lying_row()).is_err(), "{}", good.lying_row());
         }
 
         #[test]

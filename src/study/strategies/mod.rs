@@ -26,5 +26,6 @@ pub use arm::{ArmCase, JointCase, arms};
 pub use case::{OrderCase, UnstableCase, diverging, order_at_fixed_gain, order_at_fixed_step};
 pub use formula::{
     FormulaCase, adams_like, feedback_steps, formulas, from_table, look_ahead, overshooting_steps,
+    unstable_formulas,
 };
 pub use path::{PathCase, Shape, TimeLawCase, paths, time_laws};
