@@ -1,5 +1,10 @@
 //! Throughput of sweeps on one core: cases a second, and that memory does not grow with their number.
-#![allow(missing_docs, clippy::unwrap_used, clippy::print_stderr, reason = "a bench that can not go on stops")]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "a bench that can not go on stops"
+)]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use kinstep::scenario::{FormulaRows, ScenarioText};
@@ -55,7 +60,11 @@ fn memory(_: &mut Criterion) {
         swept.write(&mut std::io::sink()).unwrap();
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let peak = status.lines().find(|line| line.starts_with("VmHWM")).unwrap_or("VmHWM: unknown here");
-        eprintln!("after {} cases: {}", swept.progress.done, peak.split_whitespace().collect::<Vec<_>>().join(" "));
+        eprintln!(
+            "after {} cases: {}",
+            swept.progress.done,
+            peak.split_whitespace().collect::<Vec<_>>().join(" ")
+        );
     }
 }
 

@@ -48,7 +48,8 @@ fn figures_and_numbers_are_written_beside_each_other() {
     let run = desk.run(&[&["order", "s.toml"], &out[..]].concat()).expect(0);
     assert!(run.out.contains("order 4 confirmed"), "{}", run.out);
     assert_eq!(desk.names("study"), ["order-s.csv", "order-s.json", "order-s.svg"]);
-    assert!(std::fs::read_to_string(desk.path("study/order-s.svg")).unwrap().contains("order 4.0"));
+    let figure = std::fs::read_to_string(desk.path("study/order-s.svg")).unwrap();
+    assert!(figure.contains("la6-wang-guo: order ") && figure.ends_with("</svg>\n"), "{figure}");
     desk.run(&[&["order", "s.toml"], &out[..]].concat()).expect(6);
 }
 

@@ -63,7 +63,7 @@ fn shortfall(name: &str, order: usize, study: impl Fn(&Ladder) -> Convergence) -
     let mut said = String::new();
     for ladder in ladders(order) {
         let seen = study(&ladder);
-        let on_the_way = order >= 7
+        let on_the_way = order >= 6
             && seen.marks.last() == Some(&Mark::NearFloor)
             && seen.finest_slope().is_some_and(|slope| slope > order as f64 - 1.2);
         if seen.verdict.is_confirmed() || on_the_way {
@@ -219,7 +219,7 @@ fn strictly_stable_rows_lead_a_number_with_one_order_more() {
             Convergence::judge(&ladder.sigmas(), &errors, floor, Some(order), &Criteria::default())
         };
         let ladders = if order > 4 {
-            [Ladder::half_octaves(DURATION, 1024, 4), Ladder::half_octaves(DURATION, 4096, 4)]
+            [Ladder::halvings(DURATION, 512, 3), Ladder::half_octaves(DURATION, 2048, 4)]
         } else {
             [Ladder::halvings(DURATION, 512, 5), Ladder::halvings(DURATION, 2048, 5)]
         };

@@ -194,7 +194,8 @@ fn what_can_not_be_set_says_why() {
         ("=3", "is not a key path"),
         ("arm.left.name.x=3", "is a value"),
         ("arm.left=3", "name a key of arm.left"),
-        ("arm.left.q0[1]=3", "is not a key path"),
+        ("arm.left.q0[9]=3", "the list has 4 entries"),
+        ("arm.left.tip[0]=3", "there is no such list"),
         ("sigma.x=1", "is a value"),
     ] {
         let error = with(&[assignment]).unwrap_err();

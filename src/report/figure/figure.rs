@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::axis::Axis;
+use super::axis::{Axis, Scale};
 
 /// The outline of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -138,7 +138,7 @@ impl Figure {
         } else {
             name.to_owned()
         };
-        let _ = write!(text, "{quoted},{},{}", number(x), number(y));
+        let _ = write!(text, "{quoted},{},{}", on_axis(x, &self.x), on_axis(y, &self.y));
         if self.parameter.is_some() {
             let _ = write!(text, ",{}", parameter.map_or_else(String::new, |value| number(*value)));
         }
@@ -146,11 +146,14 @@ impl Figure {
     }
 }
 
-/// Nine digits, without noise about zero; very small numbers with their exponent.
+/// A number as its axis shows it: on a logarithmic one small numbers are no noise.
+fn on_axis(value: f64, axis: &Axis) -> String {
+    let is_small = axis.scale == Scale::Logarithmic && value != 0.0 && value.abs() < 1e-6;
+    if is_small { format!("{value:.6e}") } else { number(value) }
+}
+
+/// Nine digits, without noise about zero.
 fn number(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-6 {
-        return format!("{value:.6e}");
-    }
     let text = format!("{value:.9}");
     let trimmed = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     if trimmed == "-0" { "0".to_owned() } else { trimmed.to_owned() }
@@ -158,7 +161,6 @@ fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::axis::Scale;
     use super::*;
 
     pub(super) fn specimen() -> Figure {
