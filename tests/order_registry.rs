@@ -283,7 +283,7 @@ fn defect(formula: &Formula, sigma: f64) -> f64 {
 #[test]
 fn every_row_whatever_its_kind_has_the_defect_of_its_order() {
     let sigmas: Vec<f64> = (0..9).map(|k| 0.04 / f64::from(1 << k)).collect();
-    for formula in FormulaTable::builtin().iter() {
+    for formula in FormulaTable::builtin() {
         let errors: Vec<f64> = sigmas.iter().map(|&sigma| defect(formula, sigma)).collect();
         let order = formula.order() + 1;
         let judge = |order| Convergence::judge(&sigmas, &errors, 1e-31, Some(order), &Criteria::default());

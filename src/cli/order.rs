@@ -167,7 +167,9 @@ fn list(output: &mut Output) -> Result<Exit, Failure> {
         output.json(&json!({ "problems": problems }))?;
     } else {
         let mut table = Table::new(["problem", "what it is"]);
-        problems.iter().for_each(|(name, source)| _ = table.row([*name, source.as_str()]));
+        for (name, source) in &problems {
+            table.row([*name, source.as_str()]);
+        }
         output.text(&format!(
             "{table}\nNext:\n  kinstep order kepler --formula ab4\n  kinstep order mine.toml --out study\n"
         ))?;

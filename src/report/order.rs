@@ -35,7 +35,9 @@ impl OrderPage<'_> {
         );
         for row in self.rows {
             let _ = writeln!(text, "{}: {}", row.id, row.seen.verdict);
-            row.report.notes.iter().for_each(|note| _ = writeln!(text, "  {note}"));
+            for note in &row.report.notes {
+                let _ = writeln!(text, "  {note}");
+            }
         }
         text
     }

@@ -223,16 +223,13 @@ impl OrderStudy {
         let mut report = OrderReport::empty(&self.ladder);
         let common =
             self.ladder.common().filter(|common| common.steps as f64 <= MOST_COMMON * self.longest());
-        let (coarse, fine) = match common {
-            Some(common) => (
-                run(&reference, common, &mut report.notes)?,
-                run(&reference, self.ladder.rung(2 * common.steps), &mut report.notes)?,
-            ),
-            None => {
-                report.notes.push("the joints are not studied: the gaps of the ladder have no common grid of moderate size; choose gaps in simple ratios".to_owned());
-                (None, None)
-            }
-        };
+        let (mut coarse, mut fine) = (None, None);
+        if let Some(common) = common {
+            coarse = run(&reference, common, &mut report.notes)?;
+            fine = run(&reference, self.ladder.rung(2 * common.steps), &mut report.notes)?;
+        } else {
+            report.notes.push("the joints are not studied: the gaps of the ladder have no common grid of moderate size; choose gaps in simple ratios".to_owned());
+        }
         let (mut errors, mut joint) = (Vec::new(), Vec::new());
         for rung in self.ladder.rungs() {
             let plan = run(&planner, rung, &mut report.notes)?;

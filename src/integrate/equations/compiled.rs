@@ -49,7 +49,9 @@ impl<T: Elementary> Compiled<T> {
     }
 
     fn after(&mut self, arguments: &[&Node], operation: Operation<T>) -> Operation<T> {
-        arguments.iter().for_each(|argument| self.add(argument));
+        for argument in arguments {
+            self.add(argument);
+        }
         operation
     }
 

@@ -251,12 +251,14 @@ impl Names {
         }
         unknowns
             .iter()
-            .map(|unknown| match found.iter().position(|(name, _)| name == unknown) {
-                Some(line) => self.read(list, line, found[line].1, visible),
-                None => {
-                    let message = format!("there is no line for the unknown \"{unknown}\"");
-                    Err(EquationError { list, line: None, message })
-                }
+            .map(|unknown| {
+                let line =
+                    found.iter().position(|(name, _)| name == unknown).ok_or_else(|| EquationError {
+                        list,
+                        line: None,
+                        message: format!("there is no line for the unknown \"{unknown}\""),
+                    })?;
+                self.read(list, line, found[line].1, visible)
             })
             .collect()
     }
