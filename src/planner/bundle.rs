@@ -188,3 +188,48 @@ impl<A: LaneArray, const M: usize> Kernel for Rows<'_, A, M> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::embedded;
+    use crate::task::{Circle, Motion, Planar, Sin2};
+    use nalgebra::IsometryMatrix3;
+
+    fn arm(task: TaskKind, turned: f64) -> Arm {
+        let chain = embedded::get("panda").unwrap().chain("panda_link0", "panda_link8").unwrap();
+        let q0 = vec![0.1 + turned, -0.4, 0.2, -2.1, 0.3, 1.8, 0.6];
+        let start = chain.forward(&q0, &mut chain.scratch()).pose();
+        let start = start * IsometryMatrix3::rotation(nalgebra::Vector3::new(0.0, turned, 0.0));
+        let motion = Motion::from_pose(Planar::whole(Circle { radius: 0.1 }), Sin2, 2.0, &start);
+        let mut arm = Arm::new("arm", chain, q0, task, motion);
+        arm.law.prepare(task.rows(), 7, 1.0);
+        arm
+    }
+
+    fn answer<A: LaneArray>(level: Level, arms: &[Arm]) -> String {
+        let mut bundle = Bundle::<A>::new(&arms.iter().collect::<Vec<_>>()).unwrap();
+        bundle.evaluate(level, (0.7, 20.0), |lane| {
+            let arm = &arms[lane.min(arms.len() - 1)];
+            (arm, &arm.q0)
+        });
+        let Found { error, bound, smallest_pivot } = &bundle.found;
+        format!("{error:?} {bound:?} {smallest_pivot:?} {:?}", bundle.velocities)
+    }
+
+    #[test]
+    fn every_set_of_instructions_gives_the_same_bits() {
+        for task in TaskKind::ALL {
+            // Small orientation errors, and one that the series does not reach.
+            let arms = [arm(task, 0.0), arm(task, 0.02), arm(task, 0.5)];
+            for few in [&arms[..1], &arms[..2]] {
+                let [wide, base] =
+                    [Level::new(), Level::baseline()].map(|level| answer::<[f64; 2]>(level, few));
+                assert_eq!(wide, base);
+            }
+            let [wide, base] =
+                [Level::new(), Level::baseline()].map(|level| answer::<[f64; 4]>(level, &arms));
+            assert_eq!(wide, base);
+        }
+    }
+}
