@@ -47,6 +47,24 @@ fn the_summary_has_the_keys_that_scripts_rely_on() {
 }
 
 #[test]
+fn a_start_that_was_solved_for_is_written_down_and_gives_the_same_plan_again() {
+    let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/shared_torso.toml");
+    let desk = Desk::new(&[]);
+    let plan = desk.run(&["plan", scenario, "--out", "one", "--json"]).expect(0).json();
+    let start = &plan["arms"][1]["start_pose"];
+    assert!(number(&start["distance"]) < 1e-11 && plan["arms"][0]["start_pose"].is_null(), "{plan}");
+    assert_eq!(plan["shared"][0]["joints"], serde_json::json!(["lift", "waist"]));
+    let written = std::fs::read_to_string(desk.path("one/scenario.toml")).unwrap();
+    for q in start["q0"].as_array().unwrap() {
+        assert!(written.contains(&q.to_string()), "{q} is not in\n{written}");
+    }
+    desk.run(&["plan", "one/scenario.toml", "--out", "two"]).expect(0);
+    let [one, two] =
+        ["one", "two"].map(|folder| std::fs::read(desk.path(folder).join("trajectory.csv")).unwrap());
+    assert_eq!(one, two);
+}
+
+#[test]
 fn every_scenario_of_the_examples_completes_within_its_limits() {
     let folder = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/examples")).unwrap();
     let is_scenario = |path: &std::path::PathBuf| {
