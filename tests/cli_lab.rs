@@ -66,6 +66,8 @@ fn search_writes_rows_that_pass_check_and_the_front_as_data() {
     let front = std::fs::read_to_string(folder.path().join("found/front.csv")).expect("the front");
     assert!(front.starts_with("id,denominator,h_max,per_step,"), "{front}");
     assert_eq!(front.lines().count(), 1 + found["front"].as_array().map_or(0, Vec::len));
+    let picture = std::fs::read_to_string(folder.path().join("found/front.svg")).expect("the figure");
+    assert!(picture.contains("rows of the table") && picture.contains("5 steps, order 3"));
     // Files are not replaced unasked.
     kinstep(&[&SEARCH[..], &["--out", out]].concat()).assert().code(6);
 }
@@ -101,4 +103,52 @@ fn compare_puts_formulas_side_by_side() {
     assert!(text.lines().next().is_some_and(|head| head.contains("la6-wang-guo") && head.contains("am3")));
     assert!(refusal(&["formula", "compare", "la6-wang-guo", "la6-wang-gu"]).contains("la6-wang-guo"));
     refusal(&["formula", "compare", "la6-wang-guo"]);
+}
+
+#[test]
+fn compare_draws_the_formulas_over_one_another() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    let both = ["formula", "compare", "la6-wang-guo", "la6-fast", "--plot"];
+    let into =
+        |name: &str| [&both[..], &[&path(name)]].concat().iter().map(ToString::to_string).collect::<Vec<_>>();
+    let run = |name: &str| {
+        let arguments = into(name);
+        kinstep(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
+    };
+    run("figures").assert().success();
+    let radius = std::fs::read_to_string(path("figures/comparison-radius.csv")).expect("the numbers");
+    assert!(radius.contains("\nla6-wang-guo,") && radius.contains("\nla6-fast,"));
+    run("both.svg").assert().success();
+    assert!(
+        std::fs::read_to_string(path("both.csv")).is_ok_and(|text| text.contains("comparison-boundary,"))
+    );
+    // Not replaced unasked.
+    run("both.svg").assert().code(6);
+}
+
+#[test]
+fn the_barrier_is_recomputed_and_has_a_reason_for_every_number_of_steps() {
+    let barrier = json(&["formula", "barrier", "--steps", "10"]);
+    let lines = barrier["barrier"].as_array().expect("lines");
+    let orders: Vec<_> = lines.iter().map(|line| line["order"].as_u64().expect("an order")).collect();
+    assert_eq!(orders, [1, 1, 2, 3, 3, 4, 4, 5, 5, 6]);
+    for line in lines.iter().skip(1) {
+        let value = line["value"].as_str().expect("a coefficient");
+        assert!(value == "0" || value.starts_with('-'), "{line}");
+    }
+    refusal(&["formula", "barrier", "--steps", "19"]);
+}
+
+#[test]
+fn an_irrational_end_of_the_range_is_a_surd_or_has_its_minimal_polynomial() {
+    let card = |id: &str| json(&["formula", "show", id])["formulas"][0].clone();
+    let surd = &card("la5-18")["h_max"];
+    assert_eq!(surd["closed_form"], "(9 sqrt 17 - 27)/16");
+    assert_eq!((&surd["polynomial"], &surd["irreducible"]), (&"32 h^2 + 108 h - 81".into(), &true.into()));
+    assert_eq!(card("la9-420")["h_max"]["irreducible"], true);
+    // A bound, proved, a billionth part below the optimum.
+    let row = card("la6-wang-guo");
+    let (r, bound) = (row["r_opt"].as_f64().expect("r_opt"), row["r_bound"].as_f64().expect("a bound"));
+    assert!(bound < r && r - bound < 1.1e-9);
 }

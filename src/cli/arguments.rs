@@ -224,8 +224,14 @@ Examples:
 The same arguments and seed find the same rows, whatever the number of threads, unless --seconds cuts the search short.")]
     Search(FormulaSearch),
     /// Compare formulas side by side
-    #[command(after_help = "Example:\n  kinstep formula compare la6-wang-guo la6-twenty-four split-ab4")]
+    #[command(after_help = "\
+Examples:
+  kinstep formula compare la6-wang-guo la6-twenty-four split-ab4
+  kinstep formula compare la6-wang-guo la6-fast --plot both.svg     with figures, and their numbers as CSV")]
     Compare(FormulaCompare),
+    /// Say which orders look-ahead formulas can have, and why no higher ones
+    #[command(after_help = "Example:\n  kinstep formula barrier --steps 12")]
+    Barrier(FormulaBarrier),
     /// Write the page about all formulas, in Markdown, with its pictures
     #[command(after_help = "Example:\n  kinstep formula docs --out docs/formulas.md --force")]
     Docs(FormulaDocs),
@@ -266,7 +272,8 @@ pub(super) struct FormulaSearch {
     #[arg(long)]
     pub(super) order: usize,
 
-    /// What to be best at: range, decay, error-constant, noise, steady, economy, or weights such as range=2,decay=1
+    /// What to be best at: range, decay, error-constant, per-step, noise, steady, economy, or weights such as
+    /// range=2,decay=1
     #[arg(long, default_value = "range")]
     pub(super) objective: String,
 
@@ -306,7 +313,7 @@ pub(super) struct FormulaSearch {
     #[arg(long, default_value_t = 3)]
     pub(super) rows: usize,
 
-    /// Folder for rows.toml and front.csv; made if it is not there
+    /// Folder for rows.toml, front.csv and the figure front.svg; made if it is not there
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
 
@@ -316,10 +323,26 @@ pub(super) struct FormulaSearch {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct FormulaBarrier {
+    /// Up to this number of steps, 18 at most
+    #[arg(long, value_name = "S", default_value_t = 16, value_parser = clap::value_parser!(u64).range(1..=18))]
+    pub(super) steps: u64,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct FormulaCompare {
     /// Ids of two or more formulas
     #[arg(value_name = "ID", required = true, num_args = 2..)]
     pub(super) ids: Vec<String>,
+
+    /// Draw the formulas over one another: into a folder, a file per figure, or all on one page when the name ends in .svg; numbers
+    /// go beside as CSV
+    #[arg(long, value_name = "DIR|FILE")]
+    pub(super) plot: Option<PathBuf>,
+
+    /// Replace figures that are already there
+    #[arg(long, requires = "plot")]
+    pub(super) force: bool,
 }
 
 #[derive(Debug, Args)]

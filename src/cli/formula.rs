@@ -10,7 +10,7 @@ use super::formula_card::{Card, Cards};
 use super::formula_list::{FormulaList, Recommended, RuleList};
 use super::formula_plot::{plot, write_all};
 use super::output::{Output, Show};
-use super::{formula_compare, formula_derive, formula_search};
+use super::{formula_barrier, formula_compare, formula_derive, formula_search};
 use crate::formula::{
     Analysis, CheckedRow, DefectKind, Formula, FormulaTable, Row, Snippet, Strictness, bibtex, read_rows,
 };
@@ -33,6 +33,7 @@ pub(super) fn run(
         FormulaCommand::Derive(arguments) => formula_derive::run(arguments, output),
         FormulaCommand::Search(arguments) => formula_search::run(arguments, &own_rows, output),
         FormulaCommand::Compare(arguments) => formula_compare::run(arguments, &own_rows, output),
+        FormulaCommand::Barrier(arguments) => formula_barrier::run(arguments, output),
         FormulaCommand::Docs(arguments) => docs(arguments, output),
     }
 }

@@ -55,6 +55,8 @@ pub(super) struct Card {
     r_opt_squared_exact: Option<Exact>,
     /// What makes h_opt the best.
     optimum_cause: Option<&'static str>,
+    /// Proved: no h of the range has a radius below this.
+    r_bound: Option<f64>,
     ssp_coefficient: Option<String>,
     problems: Vec<String>,
     remarks: Vec<String>,
@@ -72,7 +74,11 @@ pub(super) struct Card {
 #[derive(Clone, Default, Serialize)]
 pub(super) struct HMax {
     exact: Option<String>,
+    /// An irrational end of degree two.
+    closed_form: Option<String>,
     polynomial: Option<String>,
+    /// Whether the polynomial is proved irreducible.
+    irreducible: Option<bool>,
     /// Two fractions with an irrational end between them.
     certified_interval: Option<[String; 2]>,
     pub(super) value: Option<f64>,
@@ -138,12 +144,33 @@ impl HMax {
         let Some(range) = analysis.feedback_range().filter(|_| analysis.is_zero_stable()) else {
             return Self::default();
         };
+        let irrational = range.irrational();
         Self {
             exact: range.exact().map(|exact| exact.to_string()),
-            polynomial: range.polynomial(),
+            closed_form: irrational.as_ref().and_then(AlgebraicNumber::closed_form),
+            polynomial: irrational.as_ref().map(|number| number.polynomial().to_text("h")),
+            irreducible: irrational.as_ref().map(AlgebraicNumber::is_minimal),
             certified_interval: range.certified_interval().map(interval),
             value: Some(range.value()).filter(|value| value.is_finite()),
             unbounded: range.is_unbounded(),
+        }
+    }
+
+    /// The range as a line of the card.
+    fn sentence(&self) -> String {
+        let Self { exact, closed_form, polynomial, irreducible, value, unbounded, .. } = self;
+        match (exact.as_deref(), value) {
+            _ if *unbounded => "every h > 0".to_owned(),
+            (Some("0"), _) => "empty: no h gives a stable loop".to_owned(),
+            (Some(exact), Some(value)) if exact.contains('/') => format!("0 < h < {exact} = {value:.6}"),
+            (Some(exact), _) => format!("0 < h < {exact}"),
+            (None, Some(value)) => {
+                let closed = closed_form.as_ref().map_or_else(String::new, |closed| format!("{closed} = "));
+                let polynomial = polynomial.as_deref().unwrap_or("a polynomial");
+                let minimal = if *irreducible == Some(true) { ", irreducible" } else { "" };
+                format!("0 < h < {closed}{value:.12}, a root of {polynomial}{minimal}")
+            }
+            _ => "none".to_owned(),
         }
     }
 
@@ -193,6 +220,7 @@ impl Card {
             h_opt_exact: closed_form.as_ref().map(|form| Exact::of(&form.h, "h")),
             r_opt_squared_exact: squared.map(|squared| Exact::of(squared, "R")),
             optimum_cause: closed_form.as_ref().map(|form| form.cause.words()),
+            r_bound: analysis.radius_bound(),
             ssp_coefficient: analysis.ssp_coefficient().map(|c| c.to_string()),
             snippets: BTreeMap::new(),
             problems,
@@ -273,23 +301,7 @@ impl Card {
     }
 
     fn closed_loop_lines(&self, line: &mut impl FnMut(&str, &str)) {
-        let HMax { exact, polynomial, value, unbounded, .. } = &self.facts.h_max;
-        line(
-            "feedback range",
-            &match (exact.as_deref(), value) {
-                _ if *unbounded => "every h > 0".to_owned(),
-                (Some("0"), _) => "empty: no h gives a stable loop".to_owned(),
-                (Some(exact), Some(value)) if exact.contains('/') => format!("0 < h < {exact} = {value:.6}"),
-                (Some(exact), _) => format!("0 < h < {exact}"),
-                (None, Some(value)) => {
-                    format!(
-                        "0 < h < {value:.12}, a root of {}",
-                        polynomial.as_deref().unwrap_or("a polynomial")
-                    )
-                }
-                _ => "none".to_owned(),
-            },
-        );
+        line("feedback range", &self.facts.h_max.sentence());
         self.optimum_lines(line);
         if let Some(noise) = &self.facts.noise_gain {
             line(
@@ -309,6 +321,7 @@ impl Card {
         line("best h", &format!("{h:.6}, where errors decay by {r:.6} per step"));
         let Some(exact) = &self.h_opt_exact else {
             line("  exactly", "out of reach for a row of this length; the figures are numeric");
+            self.bound_line(line);
             return;
         };
         let cause = self.optimum_cause.map_or_else(String::new, |cause| format!("; {cause}"));
@@ -317,6 +330,13 @@ impl Card {
             Some(squared) if squared.value == 0.0 => {}
             Some(squared) => line("  r^2 exactly", &squared.text()),
             None => line("  r^2 exactly", "not found; the figure is numeric"),
+        }
+        self.bound_line(line);
+    }
+
+    fn bound_line(&self, line: &mut impl FnMut(&str, &str)) {
+        if let Some(bound) = self.r_bound.filter(|bound| *bound > 0.0) {
+            line("  proved", &format!("no h of the range has a radius below {bound:.12}"));
         }
     }
 

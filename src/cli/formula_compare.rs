@@ -5,8 +5,9 @@ use serde::Serialize;
 use super::arguments::FormulaCompare;
 use super::failure::{Exit, Failure};
 use super::formula::checked;
+use super::formula_plot::plot_together;
 use super::output::{Output, Show};
-use crate::formula::{Analysis, Row};
+use crate::formula::{Analysis, CheckedRow, Row};
 use crate::math::{Rational, rational_to_f64};
 use crate::report::{Table, short};
 
@@ -15,11 +16,16 @@ pub(super) fn run(
     own_rows: &[Row],
     output: &mut Output,
 ) -> Result<Exit, Failure> {
-    let columns = arguments
-        .ids
-        .iter()
-        .map(|id| checked(id, own_rows).map(|checked| Column::new(id, checked.analysis())))
-        .collect::<Result<Vec<_>, _>>()?;
+    let rows =
+        arguments.ids.iter().map(|id| checked(id, own_rows)).collect::<Result<Vec<CheckedRow>, Failure>>()?;
+    if let Some(path) = &arguments.plot {
+        let drawn: Vec<(&str, &Analysis)> = rows.iter().map(|row| (row.row().id(), row.analysis())).collect();
+        let written = plot_together(path, arguments.force, &drawn)?;
+        if !output.wants_json() {
+            output.remark(&format!("written: {}", written.join(", ")));
+        }
+    }
+    let columns = rows.iter().map(|row| Column::new(row.row().id(), row.analysis())).collect();
     output.show(&Comparison { formulas: columns })?;
     Ok(Exit::Done)
 }

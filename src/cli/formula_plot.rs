@@ -5,22 +5,40 @@ use std::path::Path;
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use crate::formula::Analysis;
-use crate::report::figure::{Figure, portrait, sheet};
+use crate::report::figure::{Figure, comparison, portrait, sheet};
 
 /// Most steps of a row that is drawn: beyond, pictures are black.
 const MOST_DRAWN: usize = 40;
 
-/// Draws rows into a folder, a file per figure, or, where the name ends in `.svg`, on one page; returns the names written.
+/// Draws rows, each by itself; see [`draw`].
 pub(super) fn plot(path: &Path, force: bool, rows: &[(&str, &Analysis)]) -> Result<Vec<String>, Failure> {
-    if let Some((id, analysis)) = rows.iter().find(|(_, analysis)| analysis.steps() > MOST_DRAWN) {
-        let steps = analysis.steps();
-        return Err(Failure::usage(format!(
-            "{id} has {steps} steps; figures are drawn of up to {MOST_DRAWN}"
-        )));
-    }
+    refuse_long(rows)?;
     let figures: Vec<Figure> = rows.iter().flat_map(|(id, analysis)| portrait(id, analysis)).collect();
-    let ids: Vec<&str> = rows.iter().map(|(id, _)| *id).collect();
-    draw(path, force, &ids.join(", "), &figures)
+    draw(path, force, &title(rows), &figures)
+}
+
+/// Draws rows over one another; see [`draw`].
+pub(super) fn plot_together(
+    path: &Path,
+    force: bool,
+    rows: &[(&str, &Analysis)],
+) -> Result<Vec<String>, Failure> {
+    refuse_long(rows)?;
+    draw(path, force, &title(rows), &comparison(rows))
+}
+
+fn refuse_long(rows: &[(&str, &Analysis)]) -> Result<(), Failure> {
+    match rows.iter().find(|(_, analysis)| analysis.steps() > MOST_DRAWN) {
+        None => Ok(()),
+        Some((id, analysis)) => {
+            let steps = analysis.steps();
+            Err(Failure::usage(format!("{id} has {steps} steps; figures are drawn of up to {MOST_DRAWN}")))
+        }
+    }
+}
+
+fn title(rows: &[(&str, &Analysis)]) -> String {
+    rows.iter().map(|(id, _)| *id).collect::<Vec<_>>().join(", ")
 }
 
 /// Writes figures into a folder, a file per figure, or, where the name ends in `.svg`, on one page of that title; returns

@@ -14,22 +14,24 @@ use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use super::formula::checked;
 use super::output::{Output, Show};
-use crate::formula::Row;
 use crate::formula::search::Figures;
 use crate::formula::search::{
     Family, Found, Objective, Observer, Options, Outcome, Progress, SearchError, Target, front_csv, search,
 };
+use crate::formula::{Formula, FormulaTable, Row};
+use crate::report::figure::{Figure, FrontPoint, pareto_figure};
 use crate::report::{Table, short};
 
 const ROWS: &str = "rows.toml";
 const FRONT: &str = "front.csv";
+const PICTURE: &str = "front.svg";
 
 pub(super) fn run(arguments: &FormulaSearch, own_rows: &[Row], output: &mut Output) -> Result<Exit, Failure> {
     let options = options(arguments, own_rows)?;
     let folder = arguments
         .out
         .as_deref()
-        .map(|path| Folder::open(path, arguments.force, &[ROWS, FRONT]))
+        .map(|path| Folder::open(path, arguments.force, &[ROWS, FRONT, PICTURE]))
         .transpose()?;
     let watcher = Watcher::new(output.wants_json());
     let outcome = search(&options, &watcher);
@@ -51,9 +53,31 @@ pub(super) fn run(arguments: &FormulaSearch, own_rows: &[Row], output: &mut Outp
     if let Some(folder) = folder {
         folder.write(ROWS, |out| out.write_all(report.toml().as_bytes()))?;
         folder.write(FRONT, |out| out.write_all(front_csv(&outcome.front).as_bytes()))?;
+        folder.write(PICTURE, |out| out.write_all(picture(&options, &outcome).to_svg().as_bytes()))?;
     }
     output.show(&report)?;
     Ok(Exit::Done)
+}
+
+/// The front beside the rows of the table that have as many steps and the same order.
+fn picture(options: &Options, outcome: &Outcome) -> Figure {
+    let point = |found: &Found| FrontPoint {
+        id: found.checked.row().id().to_owned(),
+        h_max: found.figures.h_max,
+        per_step: found.figures.per_step,
+        r_opt: found.figures.r_opt,
+    };
+    let front: Vec<FrontPoint> = outcome.front.iter().map(point).collect();
+    let kind = (options.steps, options.order);
+    let is_alike = |row: &&Formula| {
+        (row.steps(), row.order()) == kind
+            && row.is_explicit()
+            && row.is_strictly_zero_stable()
+            && !row.feedback_range().is_empty()
+    };
+    let known: Vec<FrontPoint> =
+        FormulaTable::builtin().iter().filter(is_alike).map(FrontPoint::of).collect();
+    pareto_figure(kind, &front, &known, "rows of the table")
 }
 
 fn refuse(error: &SearchError) -> Failure {

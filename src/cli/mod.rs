@@ -4,6 +4,7 @@ mod arguments;
 mod failure;
 mod folder;
 mod formula;
+mod formula_barrier;
 mod formula_card;
 mod formula_compare;
 mod formula_derive;

@@ -4,22 +4,16 @@ use std::sync::OnceLock;
 
 use num_traits::Zero;
 
-use crate::math::{Polynomial, Rational, RootCondition, root_condition, root_moduli};
+use crate::math::{Polynomial, Rational, RootCondition, rational_from_f64, root_condition, root_moduli};
 
 use super::closed_form::{ClosedForm, closed_form};
 use super::feedback_range::{ClosedLoop, FeedbackRange};
 use super::noise::{NoiseGain, noise_gain};
 use super::order::{Order, order_defect, order_of};
 use super::radius::{Optimum, optimum, spectral_radius};
+use super::radius_bound::is_radius_reached;
 use super::ssp::ssp_coefficient;
-
-/// The weights of a row, normalised so that alpha_0 = 1, newest sample first, three lists of one length.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Weights {
-    pub(crate) alpha: Vec<Rational>,
-    pub(crate) beta: Vec<Rational>,
-    pub(crate) gamma: Vec<Rational>,
-}
+use super::weights::Weights;
 
 /// What the numbers of a row say: facts at once, figures when first asked for.
 ///
@@ -164,6 +158,20 @@ impl Analysis {
     /// elimination is out of reach (long rows). Not kept: ask once.
     pub fn closed_form(&self) -> Option<ClosedForm> {
         closed_form(self.closed_loop.as_ref()?, self.feedback_range()?, self.optimum()?)
+    }
+
+    /// Returns a radius, a billionth part below that of the optimum, proved to be above none of the range: no h does better.
+    ///
+    /// `None` without an optimum and for rows of more than 16 steps. Not kept: ask once.
+    pub fn radius_bound(&self) -> Option<f64> {
+        const MARGIN: f64 = 1e-9;
+        const MOST_STEPS: usize = 16;
+        let radius = self.optimum()?.radius * (1.0 - MARGIN);
+        let (closed_loop, range) = (self.closed_loop.as_ref()?, self.feedback_range()?);
+        let is_proved = radius < MARGIN
+            || self.steps() <= MOST_STEPS
+                && !is_radius_reached(closed_loop, range, &rational_from_f64(radius)?);
+        is_proved.then_some(radius)
     }
 
     /// Returns the coefficient of strong stability preservation of (alpha, beta), `None` where there is none.

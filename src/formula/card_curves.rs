@@ -240,8 +240,8 @@ fn window(boundary: &[Complex<f64>]) -> Frame {
         (low, high)
     };
     let (real, imaginary) = (span(|mu| mu.re), span(|mu| mu.im));
-    // The negative half-plane is what asks to be seen, and nothing is drawn thinner than a third of its length.
-    let least = 0.35 * f64::max(real.1 - real.0, imaginary.1 - imaginary.0).max(0.1);
+    // The negative half-plane is what asks to be seen, and nothing is drawn thinner than half of its length.
+    let least = 0.5 * f64::max(real.1 - real.0, imaginary.1 - imaginary.0).max(0.1);
     let widened = |(low, high): (f64, f64)| {
         let (middle, half) = (f64::midpoint(low, high), f64::max(high - low, least) / 2.0 * 1.12);
         (middle - half, middle + half)

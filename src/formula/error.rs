@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::math::{ParseRationalError, Rational, RootCondition};
 
-use super::row::{MAX_ROW_DIGITS, MAX_STEPS};
+use super::limits::{MAX_ROW_DIGITS, MAX_STEPS};
 
 /// A position in a file, both counted from 1; 0 and 0 where there is no file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]

@@ -7,8 +7,8 @@ use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
 use crate::math::{
-    Polynomial, Rational, RealRoot, common_denominator, half_plane_image, interpolate, is_schur,
-    last_hurwitz_determinant, positive_roots, rational_from_f64, rational_roots, rational_to_f64,
+    AlgebraicNumber, Polynomial, Rational, RealRoot, common_denominator, half_plane_image, interpolate,
+    is_schur, last_hurwitz_determinant, positive_roots, rational_from_f64, rational_roots, rational_to_f64,
 };
 
 /// The closed loop of a row: pi_h(z) = rho(z) + h gamma(z)/gamma(1), as an exact polynomial for every exact h.
@@ -46,6 +46,18 @@ impl ClosedLoop {
             (Some(rho), Some(gamma)) => (Self { rho, gamma }, fixed),
             _ => (self.clone(), Polynomial::constant(1)),
         }
+    }
+
+    /// Returns the loop whose roots are those of this one divided by a positive radius.
+    pub(crate) fn scaled(&self, radius: &Rational) -> Self {
+        let n = self.degree();
+        let scaled = |p: &Polynomial| {
+            let coefficient = |k: usize| {
+                p.coefficient(k) * radius.numer().pow(k as u32) * radius.denom().pow((n - k) as u32)
+            };
+            Polynomial::from_ascending((0..=n).map(coefficient))
+        };
+        Self { rho: scaled(&self.rho), gamma: scaled(&self.gamma) }
     }
 
     pub(crate) fn rho(&self) -> &Polynomial {
@@ -154,14 +166,20 @@ impl FeedbackRange {
         }
     }
 
-    /// Returns the integer polynomial in h of which an irrational h_max is a root, such as `32 h^2 + 108 h - 81`.
-    ///
-    /// It is primitive, has no repeated and no rational roots; factors of higher degree are not looked for.
-    pub fn polynomial(&self) -> Option<String> {
+    /// Returns an irrational h_max as an algebraic number: a surd, or a root of a polynomial that
+    /// [`AlgebraicNumber::is_minimal`] may prove irreducible. Not kept: ask once.
+    pub fn irrational(&self) -> Option<AlgebraicNumber> {
         match &self.end {
-            End::Algebraic(root) => Some(root.polynomial().to_text("h")),
+            End::Algebraic(root) => Some(AlgebraicNumber::of_root(root.clone())),
             _ => None,
         }
+    }
+
+    /// Returns the integer polynomial in h of which an irrational h_max is a root, such as `32 h^2 + 108 h - 81`.
+    ///
+    /// It is primitive and of the least degree that was found ([`FeedbackRange::irrational`]).
+    pub fn polynomial(&self) -> Option<String> {
+        self.irrational().map(|number| number.polynomial().to_text("h"))
     }
 
     /// Returns an exact interval that holds an irrational h_max, narrower than 1e-18 of it.
@@ -215,7 +233,7 @@ impl fmt::Display for FeedbackRange {
 
 /// The h that puts a root at z = -1, if any, and a polynomial whose positive zeros include every h at which a pair of
 /// roots is on the circle; `None` when no h is stable.
-fn stability_boundary(closed_loop: &ClosedLoop) -> Option<(Option<Rational>, Polynomial)> {
+pub(super) fn stability_boundary(closed_loop: &ClosedLoop) -> Option<(Option<Rational>, Polynomial)> {
     let minus_one = -Rational::one();
     let (constant, slope) = (closed_loop.rho.value_at(&minus_one), closed_loop.gamma.value_at(&minus_one));
     let crossing = match (constant.is_zero(), slope.is_zero()) {

@@ -2,12 +2,13 @@
 
 use crate::math::{Rational, RootCondition};
 
-use super::analysis::{Analysis, Weights};
+use super::analysis::Analysis;
 use super::error::NotRunnable;
 use super::feedback_range::FeedbackRange;
 use super::noise::NoiseGain;
 use super::radius::Optimum;
 use super::row::Row;
+use super::weights::Weights;
 
 /// A multistep formula
 /// sum_j alpha_j x_(n+1-j) = sigma sum_j beta_j f_(n+1-j) + sigma sum_j gamma_j g_(n+1-j)

@@ -16,15 +16,18 @@ mod error;
 mod feedback_range;
 #[expect(clippy::module_inception, reason = "the file is named after the one type it holds")]
 mod formula;
+mod limits;
 mod noise;
 mod order;
 mod radius;
+mod radius_bound;
 mod read;
 mod recommend;
 mod row;
 pub mod search;
 mod ssp;
 mod table;
+mod weights;
 
 pub use analysis::Analysis;
 pub use bibliography::bibtex;
@@ -36,12 +39,13 @@ pub use derivative_rule::DerivativeRule;
 pub use error::{Contradiction, Defect, DefectKind, NotRunnable, Place, TableError, UnknownFormula};
 pub use feedback_range::FeedbackRange;
 pub use formula::Formula;
+pub use limits::MAX_STEPS;
 pub use noise::NoiseGain;
 pub use order::order_defect;
 pub use radius::Optimum;
 pub use read::{Strictness, read_rows};
 pub use recommend::{Duty, Merit, Recommendation, merit};
-pub use row::{Coefficients, Declared, MAX_STEPS, Row};
+pub use row::{Coefficients, Declared, Row};
 pub use table::FormulaTable;
 
 pub use crate::math::RootCondition;

@@ -4,8 +4,8 @@ use num_traits::Zero;
 
 use crate::math::{Rational, Real, Wide, is_schur, rational_from_f64};
 
-use super::analysis::Weights;
 use super::feedback_range::ClosedLoop;
+use super::weights::Weights;
 
 /// What white noise of unit strength in one place makes of the residual e, as a root mean square.
 ///

@@ -2,16 +2,11 @@
 
 use num_traits::{One, Zero};
 
-use crate::math::{MAX_DIGITS, Rational, common_denominator, parse_rational};
+use crate::math::{Rational, common_denominator, parse_rational};
 
-use super::analysis::Weights;
 use super::error::{DefectKind, Place};
-
-/// The most steps a row may have.
-pub const MAX_STEPS: usize = 64;
-
-/// The most digits that a list of coefficients may need over its common denominator.
-pub(crate) const MAX_ROW_DIGITS: usize = 2 * MAX_DIGITS;
+use super::limits::{MAX_ROW_DIGITS, MAX_STEPS};
+use super::weights::Weights;
 
 /// The coefficients of a row in one of the two spellings, newest sample first.
 #[derive(Debug, Clone, PartialEq, Eq)]

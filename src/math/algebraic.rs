@@ -6,6 +6,7 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
+use super::factor_degrees::possible_factor_degrees;
 use super::lattice;
 use super::polynomial::Polynomial;
 use super::rational::{Rational, rational_to_f64};
@@ -42,13 +43,15 @@ impl AlgebraicNumber {
     /// Returns a root by its simplest description: a fraction, a surd, or the polynomial of least degree that was found.
     ///
     /// Candidates come from a short vector in the lattice of the root's powers, and count only if they divide the root's
-    /// polynomial exactly and have their own root in the same interval. Degrees up to 8 are tried.
+    /// polynomial exactly and have their own root in the same interval. Degrees up to 8 are tried, unless primes rule them out;
+    /// [`AlgebraicNumber::is_minimal`] tells whether nothing can have been missed.
     pub fn of_root(mut root: RealRoot) -> Self {
         if let Some(value) = root.rational_value() {
             return Self::Rational(value);
         }
-        let degree_of_all = root.polynomial().degree();
-        let mut least = (2..=MOST_DEGREE.min(degree_of_all.saturating_sub(1)))
+        let mut least = possible_factor_degrees(root.polynomial())
+            .into_iter()
+            .filter(|degree| (2..=MOST_DEGREE).contains(degree))
             .find_map(|degree| factor_of_degree(&mut root, degree))
             .unwrap_or(root);
         if least.polynomial().degree() == 2
@@ -78,6 +81,23 @@ impl AlgebraicNumber {
             Self::Rational(_) => 1,
             Self::Surd(_) => 2,
             Self::Root(root) => root.polynomial().degree(),
+        }
+    }
+
+    /// Returns the integer polynomial that describes the number: primitive, with positive leading coefficient.
+    pub fn polynomial(&self) -> Polynomial {
+        match self {
+            Self::Rational(value) => Polynomial::from_ascending([-value.numer(), value.denom().clone()]),
+            Self::Surd(surd) => surd.polynomial(),
+            Self::Root(root) => root.polynomial().normalised(),
+        }
+    }
+
+    /// Returns whether that polynomial is proved irreducible, and so the minimal one; `false` leaves it open.
+    pub fn is_minimal(&self) -> bool {
+        match self {
+            Self::Rational(_) | Self::Surd(_) => true,
+            Self::Root(root) => possible_factor_degrees(root.polynomial()).is_empty(),
         }
     }
 
@@ -157,6 +177,12 @@ impl Surd {
             radicand,
             denominator: denominator / common,
         })
+    }
+
+    /// d^2 x^2 - 2 a d x + a^2 - b^2 m, primitive.
+    fn polynomial(&self) -> Polynomial {
+        let Self { rational: a, coefficient: b, radicand: m, denominator: d } = self;
+        Polynomial::from_ascending([a * a - b * b * m, a * d * BigInt::from(-2), d * d]).normalised()
     }
 
     /// Returns the nearest double, worked out in integers.
@@ -250,6 +276,7 @@ mod tests {
     fn says_nothing_closed_of_a_cubic() {
         let cube_root = positive_root(&[1, 0, 0, -2]);
         assert_eq!((cube_root.degree(), cube_root.closed_form()), (3, None));
+        assert!(cube_root.is_minimal());
         assert!((cube_root.to_f64() - 2_f64.cbrt()).abs() < 1e-15);
     }
 
@@ -270,6 +297,8 @@ mod tests {
             let expected = (-b as f64 + ((b * b - 4 * a * c) as f64).sqrt()) / (2 * a) as f64;
             prop_assert!((number.to_f64() - expected).abs() <= 1e-12 * (1.0 + expected.abs() + b.abs() as f64));
             prop_assert!(number.degree() <= 2);
+            let whole = Polynomial::from_descending(&[a, b, c]);
+            prop_assert!(whole.exact_quotient(&number.polynomial()).is_some() || number.polynomial() == whole.normalised());
         }
     }
 }

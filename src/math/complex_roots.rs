@@ -2,54 +2,13 @@
 //!
 //! Nothing is decided with these; they are for showing moduli, spectral radii and their minimum.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
 use num_bigint::BigInt;
 use num_traits::Zero;
 
 use super::polynomial::Polynomial;
 use super::rational::Rational;
+use super::real::Real;
 use super::wide::Wide;
-
-/// The arithmetic that the iteration needs.
-pub(crate) trait Real:
-    Clone
-    + PartialOrd
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-{
-    /// The nearest representable number.
-    fn from_f64(value: f64) -> Self;
-    /// The nearest double.
-    fn to_f64(&self) -> f64;
-    /// The magnitude.
-    fn magnitude(&self) -> Self;
-    /// Whether this is exactly zero.
-    fn is_zero(&self) -> bool;
-    /// The relative rounding error of a few operations.
-    fn resolution() -> f64;
-}
-
-impl Real for f64 {
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-    fn to_f64(&self) -> f64 {
-        *self
-    }
-    fn magnitude(&self) -> Self {
-        f64::abs(*self)
-    }
-    fn is_zero(&self) -> bool {
-        *self == 0.0
-    }
-    fn resolution() -> f64 {
-        2.0 * f64::EPSILON
-    }
-}
 
 /// A complex number re + i im.
 #[derive(Debug, Clone, PartialEq)]
@@ -218,7 +177,10 @@ pub fn complex_roots(polynomial: &Polynomial) -> Vec<nalgebra::Complex<f64>> {
     let mut roots = vec![nalgebra::Complex::new(0.0, 0.0); zeros];
     for (factor, multiplicity) in rest.square_free_decomposition() {
         for root in simple_roots(&factor) {
-            let root = nalgebra::Complex::new(root.re.to_f64(), root.im.to_f64());
+            let (re, im) = (root.re.to_f64(), root.im.to_f64());
+            // What is left beside a real or imaginary root is the rounding of 192 bits.
+            let part = |x: f64, other: f64| if x.abs() < 1e-50 * other.abs() { 0.0 } else { x };
+            let root = nalgebra::Complex::new(part(re, im), part(im, re));
             roots.extend(std::iter::repeat_n(root, multiplicity));
         }
     }

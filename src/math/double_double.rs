@@ -4,8 +4,8 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 use num_traits::{One, Zero};
 
-use super::complex_roots::Real;
 use super::rational::{Rational, rational_from_f64, rational_to_f64};
+use super::real::Real;
 
 /// A real number of about 32 digits: high + low with |low| at most half a unit in the last place of high (T. J. Dekker,
 /// Numer. Math. 18, 1971; Knuth's two-sum). What overflows a double overflows here too.

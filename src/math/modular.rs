@@ -10,14 +10,14 @@ use num_traits::{Signed, ToPrimitive};
 use super::polynomial::Polynomial;
 
 /// A polynomial modulo a prime, lowest power first, no zero at the end.
-type Image = Vec<u64>;
+pub(super) type Image = Vec<u64>;
 
 /// Returns the greatest common divisor of two primitive, nonzero polynomials, primitive with positive leading coefficient.
 pub(crate) fn gcd(a: &Polynomial, b: &Polynomial) -> Polynomial {
     let leading_gcd = a.leading().gcd(&b.leading());
     let mut joined: Option<(Vec<BigInt>, BigInt)> = None;
     let mut degree = a.degree().min(b.degree()) + 1;
-    for prime in primes() {
+    for prime in primes_below(1 << 62) {
         let leading = residue(&leading_gcd, prime);
         // A prime that divides both leading coefficients may lose degrees: it says nothing.
         if leading == 0 {
@@ -52,12 +52,12 @@ pub(crate) fn gcd(a: &Polynomial, b: &Polynomial) -> Polynomial {
         }
         joined = Some(candidate);
     }
-    unreachable!("the primes are without end")
+    unreachable!("the primes below 2^62 outlast any coefficients")
 }
 
-/// The primes below 2^62, from the top down.
-fn primes() -> impl Iterator<Item = u64> {
-    (0..).map(|k| (1_u64 << 62) - 1 - 2 * k).filter(|&n| is_prime(n))
+/// The odd primes below an even limit, from the top down.
+pub(super) fn primes_below(limit: u64) -> impl Iterator<Item = u64> {
+    (1..limit / 2).map(move |k| limit + 1 - 2 * k).filter(|&n| is_prime(n))
 }
 
 /// Decides primality exactly for 64-bit numbers (Miller-Rabin with the twelve bases that suffice below 2^64).
@@ -80,11 +80,11 @@ fn is_prime(n: u64) -> bool {
         })
 }
 
-fn mul(a: u64, b: u64, prime: u64) -> u64 {
+pub(super) fn mul(a: u64, b: u64, prime: u64) -> u64 {
     (u128::from(a) * u128::from(b) % u128::from(prime)) as u64
 }
 
-fn sub(a: u64, b: u64, prime: u64) -> u64 {
+pub(super) fn sub(a: u64, b: u64, prime: u64) -> u64 {
     if a >= b { a - b } else { a + prime - b }
 }
 
@@ -108,20 +108,20 @@ fn residue(value: &BigInt, prime: u64) -> u64 {
     value.mod_floor(&prime.into()).to_u64().expect("a residue is below its 62-bit prime")
 }
 
-fn image(p: &Polynomial, prime: u64) -> Image {
+pub(super) fn image(p: &Polynomial, prime: u64) -> Image {
     let mut image: Image = p.ascending().iter().map(|c| residue(c, prime)).collect();
     trim(&mut image);
     image
 }
 
-fn trim(image: &mut Image) {
+pub(super) fn trim(image: &mut Image) {
     while image.last() == Some(&0) {
         image.pop();
     }
 }
 
 /// The monic greatest common divisor modulo the prime (Euclid); not both images are zero.
-fn image_gcd(mut a: Image, mut b: Image, prime: u64) -> Image {
+pub(super) fn image_gcd(mut a: Image, mut b: Image, prime: u64) -> Image {
     while let Some(&leading) = b.last() {
         let scale = inverse(leading, prime);
         for c in &mut b {
@@ -136,8 +136,13 @@ fn image_gcd(mut a: Image, mut b: Image, prime: u64) -> Image {
         }
         std::mem::swap(&mut a, &mut b);
     }
-    let scale = inverse(a[a.len() - 1], prime);
-    a.iter().map(|&c| mul(c, scale, prime)).collect()
+    monic(a, prime)
+}
+
+/// The multiple with leading coefficient 1 of an image that is not zero.
+pub(super) fn monic(image: Image, prime: u64) -> Image {
+    let scale = inverse(image[image.len() - 1], prime);
+    image.into_iter().map(|c| mul(c, scale, prime)).collect()
 }
 
 /// Joins coefficients known modulo `modulus` with their images modulo one more prime.

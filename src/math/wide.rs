@@ -6,8 +6,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use num_bigint::{BigInt, Sign};
 use num_traits::{Signed, ToPrimitive, Zero};
 
-use super::complex_roots::Real;
 use super::rational::Rational;
+use super::real::Real;
 
 const SIGNIFICANT_BITS: u64 = 192;
 

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::figure::{pareto_figure, portrait};
+use super::figure::{FrontPoint, pareto_figure, portrait};
 use super::short;
-use crate::formula::{DerivativeRule, Duty, Formula, FormulaTable};
+use crate::formula::derive::{BarrierProof, barrier};
+use crate::formula::{Coefficients, DerivativeRule, Duty, Formula, FormulaTable};
 use crate::math::rational_to_f64;
 
 /// A page in Markdown and the pictures that it shows.
@@ -25,8 +26,10 @@ pub struct FormulaPage {
 
 /// The row that is shown in pictures.
 const PORTRAYED: &str = "la6-wang-guo";
-/// The kind of row whose front is drawn: steps and order.
-const DRAWN: (usize, usize) = (5, 3);
+/// The kinds of rows whose fronts are drawn: steps and order.
+const DRAWN: [(usize, usize); 4] = [(5, 3), (7, 4), (8, 4), (9, 5)];
+/// The barrier is listed up to so many steps.
+const BARRIER_STEPS: usize = 16;
 
 impl FormulaPage {
     /// Returns the page of a table.
@@ -36,6 +39,7 @@ impl FormulaPage {
         page.recommended(table);
         page.leaders(table);
         page.fronts(table);
+        page.barrier();
         page.portrait(table);
         page.whole_table(table);
         page.derivative_rules();
@@ -104,31 +108,52 @@ impl FormulaPage {
 
     fn fronts(&mut self, table: &FormulaTable) {
         self.markdown.push_str(FRONTS);
+        let runs = |row: &&Formula| has_loop(row) && row.is_explicit();
         let mut kinds: Vec<(usize, usize)> =
-            table.iter().filter(|row| has_loop(row)).map(|row| (row.steps(), row.order())).collect();
+            table.iter().filter(runs).map(|row| (row.steps(), row.order())).collect();
         kinds.sort_unstable();
         kinds.dedup();
-        for (steps, order) in kinds {
-            let rows: Vec<&Formula> = table
-                .iter()
-                .filter(|row| has_loop(row) && (row.steps(), row.order()) == (steps, order))
-                .collect();
+        let mut drawn = String::new();
+        for kind in kinds {
+            let rows: Vec<&Formula> =
+                table.iter().filter(runs).filter(|row| (row.steps(), row.order()) == kind).collect();
             if rows.len() < 2 {
                 continue;
             }
             let front = pareto_front(&rows);
             let names: Vec<String> = front.iter().map(|row| format!("`{}`", row.id())).collect();
+            let (steps, order) = kind;
             let _ = writeln!(self.markdown, "| {steps} | {order} | {} | {} |", rows.len(), names.join(", "));
-            if (steps, order) == DRAWN {
-                let figure = pareto_figure(steps, order, &rows, &front);
+            if DRAWN.contains(&kind) {
+                let is_beaten = |row: &&&Formula| front.iter().all(|leader| leader.id() != row.id());
+                let leaders: Vec<FrontPoint> = front.iter().map(|row| FrontPoint::of(row)).collect();
+                let beaten: Vec<FrontPoint> =
+                    rows.iter().filter(is_beaten).map(|row| FrontPoint::of(row)).collect();
+                let figure = pareto_figure(kind, &leaders, &beaten, "beaten by another");
+                let _ = writeln!(drawn, "\n![{}](pictures/{}.svg)", figure.title, figure.name);
                 self.pictures.push((format!("{}.svg", figure.name), figure.to_svg()));
             }
         }
-        let _ = writeln!(
-            self.markdown,
-            "\n![Range against error per step of the rows of {} steps and order {}](pictures/pareto-{}-{}.svg)",
-            DRAWN.0, DRAWN.1, DRAWN.0, DRAWN.1
-        );
+        self.markdown.push_str(&drawn);
+    }
+
+    fn barrier(&mut self) {
+        self.markdown.push_str(BARRIER);
+        for found in (1..=BARRIER_STEPS).filter_map(barrier) {
+            let beyond = match &found.beyond {
+                BarrierProof::Sign { index, value } => format!("r_{index} = {value} is fixed, not positive"),
+                BarrierProof::TooFewSteps => "too few steps".to_owned(),
+                BarrierProof::Witness(_) | BarrierProof::Open => "undecided".to_owned(),
+            };
+            let witness = match found.witness.coefficients() {
+                Coefficients::Difference { numerators, denominator } if found.steps <= 7 => {
+                    let list: Vec<String> = numerators.iter().map(ToString::to_string).collect();
+                    format!("({})/{denominator}", list.join(", "))
+                }
+                _ => "long; `--json` has it".to_owned(),
+            };
+            let _ = writeln!(self.markdown, "| {} | {} | {beyond} | {witness} |", found.steps, found.order);
+        }
     }
 
     fn portrait(&mut self, table: &FormulaTable) {
@@ -182,6 +207,7 @@ impl FormulaPage {
             row.steps().to_string(),
             row.order().to_string(),
             exact(row.error_constant()),
+            exact(row.per_step_constant()),
             stable.to_owned(),
             if row.is_zero_stable() { end } else { dash() },
             optimum.map_or_else(dash, |optimum| format!("{:.4}", optimum.h)),
@@ -277,15 +303,28 @@ Among explicit zero-stable rows with a feedback range: the best row of each orde
 const FRONTS: &str = "
 ## Pareto fronts
 
-Rows of one kind that no other row of the table beats in h_max, |C| and r_opt together.
+Explicit rows of one kind that no other row of the table beats in h_max, |C| and r_opt together. How far a search came beyond
+them is in [search.md](search.md).
 
 | steps | order | rows | on the front |
 |--:|--:|--:|---|
 ";
 
+const BARRIER: &str = "
+## Which orders there are
+
+The highest order that look-ahead formulas of s steps can have with only z = 1 on the unit circle, recomputed when this page is
+written. With zeta = (z - 1)/(z + 1) the other roots are inside the circle exactly when R(zeta) = sum_i r_i zeta^i has all its roots
+in the left half-plane, for which every r_i must be positive; order p fixes r_0, ..., r_(p-1). The third column is the
+coefficient that forbids the next order, the last a formula of the highest one, checked exactly. `kinstep formula barrier` prints this table.
+
+| steps | highest order | why no higher one | a formula |
+|--:|--:|---|---|
+";
+
 const TABLE_HEAD: &str = "\
-| row | s | p | c | zero-stable | h_max | h_opt | r_opt | residual noise | feedforward noise | SSP | source |
-|---|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|---|";
+| row | s | p | c | C | zero-stable | h_max | h_opt | r_opt | residual noise | feedforward noise | SSP | source |
+|---|--:|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|---|";
 
 const RULES: &str = "
 ## Derivative rules
@@ -306,7 +345,7 @@ mod tests {
     fn a_beaten_row_is_not_on_the_front() {
         let table = FormulaTable::builtin();
         let rows: Vec<&Formula> =
-            table.iter().filter(|row| has_loop(row) && (row.steps(), row.order()) == DRAWN).collect();
+            table.iter().filter(|row| has_loop(row) && (row.steps(), row.order()) == DRAWN[0]).collect();
         let front = pareto_front(&rows);
         assert!(front.len() >= 2 && front.len() < rows.len());
         // The paper's row is beaten in every column by la6-twelve.

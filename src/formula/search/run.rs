@@ -120,6 +120,10 @@ pub struct Outcome {
 const GROUP: usize = 8;
 /// So many of the best starts are refined and brought to fractions.
 const REFINED: usize = 8;
+/// So many candidates are decided exactly before the best of them is taken: an exact decision takes a tenth of a second and more.
+const MOST_DECIDED: usize = 24;
+/// What the merit in doubles may promise too much.
+const AGREEMENT: f64 = 2e-3;
 
 /// Searches.
 ///
@@ -157,7 +161,8 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
         let candidates = self.to_fractions(&judge, &refined);
         let rows = self.pick(&judge, candidates);
         // Beside double roots doubles promise too much: what counts is what the exact decision confirms.
-        let real = refined.iter().find(|best| self.is_real(&judge, best)).map(|best| best.merit);
+        let mut real = refined.iter().filter(|_| !(self.stop)());
+        let real = real.find(|best| self.is_real(&judge, best)).map(|best| best.merit);
         let best = real.into_iter().chain(rows.iter().map(|row| row.merit)).reduce(f64::min);
         let bound = self.value(best.ok_or(SearchError::NothingFound { starts: self.options.starts })?);
         let front = if self.options.front { self.front(&rows) } else { Vec::new() };
@@ -254,40 +259,60 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
         found
     }
 
-    /// The best candidate that the exact decision confirms, then the simplest within 2 %, 10 % and more of it.
+    /// The best candidate by exact figures, then the simplest ones within 2 %, 10 % and more of it.
     fn pick(&self, judge: &Judge<'_>, candidates: Vec<Candidate>) -> Vec<Found> {
         const SLACK: [f64; 5] = [0.02, 0.05, 0.1, 0.2, 0.4];
-        let mut rows: Vec<Found> = Vec::new();
-        let word = judge.objective.word();
-        let Some(best) =
-            candidates.iter().find_map(|candidate| self.confirm(judge.objective, candidate, &word))
-        else {
-            return rows;
-        };
-        let best_merit = best.merit;
-        rows.push(best);
+        let mut rows: Vec<Found> = self.best_of(judge, &candidates).into_iter().collect();
+        let Some(best_merit) = rows.first().map(|best| best.merit) else { return rows };
         let mut simplest = candidates;
         if matches!(judge.objective, Objective::Beat(_)) && best_merit < 0.0 {
             simplest.retain(|candidate| candidate.merit < 0.0);
         }
         simplest.sort_by_key(|candidate| candidate.denominator);
+        let word = judge.objective.word();
         for slack in SLACK {
-            if rows.len() >= self.options.rows {
+            if rows.len() >= self.options.rows || (self.stop)() {
                 break;
             }
             let enough = |candidate: &&Candidate| candidate.merit <= best_merit + slack;
             let row = simplest
                 .iter()
                 .filter(enough)
+                .take(MOST_DECIDED)
                 .find_map(|candidate| self.confirm(judge.objective, candidate, &word));
             rows.extend(row.filter(|row| rows.iter().all(|known| known.checked.row() != row.checked.row())));
         }
         rows
     }
 
+    /// The first candidate whose exact figures are what doubles promised; where none of the foremost keeps its promise, the best
+    /// of them by exact figures.
+    fn best_of(&self, judge: &Judge<'_>, candidates: &[Candidate]) -> Option<Found> {
+        let word = judge.objective.word();
+        let mut best: Option<Found> = None;
+        // Rows that are not even stable are refused at once and do not count.
+        let decided = candidates.iter().filter_map(|candidate| {
+            let found = self.decide(judge.objective, candidate, &word)?;
+            Some((found.merit <= candidate.merit + AGREEMENT, found))
+        });
+        for (keeps, found) in decided.take(MOST_DECIDED) {
+            if best.as_ref().is_none_or(|best| found.merit < best.merit) {
+                best = Some(found);
+            }
+            if keeps || (self.stop)() {
+                break;
+            }
+        }
+        best
+    }
+
     /// The row of a candidate, unless the exact figures disagree with those in doubles.
     fn confirm(&self, objective: &Objective, candidate: &Candidate, word: &str) -> Option<Found> {
-        const AGREEMENT: f64 = 2e-3;
+        self.decide(objective, candidate, word).filter(|found| found.merit <= candidate.merit + AGREEMENT)
+    }
+
+    /// The row of a candidate with its exact figures, `None` where it is not what was asked for.
+    fn decide(&self, objective: &Objective, candidate: &Candidate, word: &str) -> Option<Found> {
         let Candidate { numerators, denominator, .. } = candidate;
         let Options { steps, order, family, .. } = self.options;
         let prefix = if *family == Family::LookAhead {
@@ -300,10 +325,13 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
         if !checked.analysis().is_strictly_zero_stable() || checked.analysis().order() < Some(*order) {
             return None;
         }
+        let range = checked.analysis().feedback_range()?.value();
+        if range < self.options.least_range {
+            return None;
+        }
         let figures = Figures::exact(checked.analysis())?;
         let merit = objective.merit(&figures);
-        let confirmed = merit <= candidate.merit + AGREEMENT && figures.h_max >= self.options.least_range;
-        confirmed.then_some(Found { checked, figures, merit, denominator: *denominator })
+        Some(Found { checked, figures, merit, denominator: *denominator })
     }
 
     /// Rows that are best at many mixtures of range, error and decay, none dominated by another.

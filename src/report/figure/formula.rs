@@ -4,8 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::axis::{Axis, Scale};
 use super::figure::{Figure, Mark, Shape};
-use crate::formula::{Analysis, Formula, FrequencyResponse, StabilityRegion};
-use crate::math::rational_to_f64;
+use crate::formula::{Analysis, FrequencyResponse, StabilityRegion};
 
 /// Returns every picture that a row has: its roots, their locus, the spectral radius, the region of stability and, where the
 /// loop has a best feedback step, the frequency response. `id` names the files.
@@ -16,7 +15,7 @@ pub fn portrait(id: &str, analysis: &Analysis) -> Vec<Figure> {
         figures.extend([locus_figure(id, analysis), radius_figure(&rows)]);
     }
     figures.push(region_figure(id, analysis));
-    figures.extend(frequency_figure(&rows));
+    figures.extend(frequency_figure(id, analysis));
     figures
 }
 
@@ -36,6 +35,29 @@ fn plane(figure: &str, id: &str, title: String, half: f64, marks: Vec<Mark>) -> 
 fn unit_circle() -> Mark {
     let point = |k: usize| (TAU * k as f64 / 180.0).sin_cos();
     Mark::Guide { points: (0..=180).map(|k| (point(k).1, point(k).0)).collect() }
+}
+
+/// Returns what several rows can be compared by: the spectral radius, the boundaries of their regions of stability, and the
+/// frequency response of either kind of noise; a line for each row.
+pub fn comparison(rows: &[(&str, &Analysis)]) -> Vec<Figure> {
+    let mut figures = vec![radius_figure(rows), boundary_figure(rows)];
+    figures.extend(GAINS.iter().filter_map(|gain| gain_figure(rows, gain)));
+    figures
+}
+
+/// The stem of the files of rows, and what titles call them.
+fn stem(rows: &[(&str, &Analysis)]) -> String {
+    match rows {
+        [(id, _)] => (*id).to_owned(),
+        _ => "comparison".to_owned(),
+    }
+}
+
+fn title_of(rows: &[(&str, &Analysis)], what: &str) -> String {
+    match rows {
+        [(id, _)] => format!("{id}: {what}"),
+        _ => what.to_owned(),
+    }
 }
 
 /// Returns the roots of rho(z) in the unit disk.
@@ -125,12 +147,11 @@ pub fn radius_figure(rows: &[(&str, &Analysis)]) -> Figure {
             });
         }
     }
-    let names = rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
     // Room for the label below the lowest point.
     let margin = 0.12 * (1.15 - least);
     Figure {
-        name: format!("{}-radius", names.join("-")),
-        title: format!("{}: spectral radius of the closed loop", names.join(", ")),
+        name: format!("{}-radius", stem(rows)),
+        title: title_of(rows, "spectral radius of the closed loop"),
         x: Axis::new("feedback step h", "h", Scale::Linear, (0.0, end)),
         y: Axis::new("spectral radius r(h), decay per step", "r", Scale::Linear, (least - margin, 1.15)),
         is_isometric: false,
@@ -143,8 +164,11 @@ pub fn radius_figure(rows: &[(&str, &Analysis)]) -> Figure {
 pub fn region_figure(id: &str, analysis: &Analysis) -> Figure {
     let StabilityRegion { real, imaginary, stable, boundary } = analysis.stability_region(260);
     let count = boundary.len().saturating_sub(1).max(1) as f64;
+    let strips = strips(real, imaginary, &stable);
+    // No name in the legend where nothing is stable.
+    let name = if strips.is_empty() { "" } else { "stable" }.to_owned();
     let marks = vec![
-        Mark::Region { name: "stable".to_owned(), strips: strips(real, imaginary, &stable), style: 5 },
+        Mark::Region { name, strips, style: 5 },
         Mark::Guide { points: vec![(0.0, imaginary.0), (0.0, imaginary.1)] },
         Mark::Guide { points: vec![(real.0, 0.0), (real.1, 0.0)] },
         Mark::Line {
@@ -184,32 +208,77 @@ fn strips(real: (f64, f64), imaginary: (f64, f64), stable: &[Vec<bool>]) -> Vec<
     strips
 }
 
-/// One of the gains.
-type Gain = fn(&FrequencyResponse) -> f64;
-
-/// Returns how the closed loop at h_opt passes noise on, over the frequency; `None` where no row has an optimum.
-pub fn frequency_figure(rows: &[(&str, &Analysis)]) -> Option<Figure> {
-    let places: [(&str, Gain); 3] = [
-        ("residual", |r| r.residual),
-        ("feedforward / \u{3c3}", |r| r.feedforward_per_sigma),
-        ("joint state", |r| r.state),
-    ];
+/// Returns the boundary loci of the regions where x' = lambda x is integrated stably, a line for each row.
+pub fn boundary_figure(rows: &[(&str, &Analysis)]) -> Figure {
     let mut marks = Vec::new();
-    let mut titles = Vec::new();
-    for (id, analysis) in rows {
-        let Some(optimum) = analysis.optimum() else { continue };
-        titles.push(format!("{id}, h = {:.4}", optimum.h));
-        let response = analysis.frequency_response(optimum.h, 600);
-        for (name, value) in places {
-            let name = if rows.len() == 1 { name.to_owned() } else { format!("{id}, {name}") };
-            let points: Vec<(f64, f64)> = response.iter().map(|r| (r.omega, value(r))).collect();
-            // A deadbeat loop lets nothing of some noise through: no line on a logarithmic axis.
-            if points.iter().all(|p| p.1 < 1e-9) {
-                continue;
-            }
-            marks.push(Mark::Line { name, points, parameter: Vec::new(), style: marks.len() });
-        }
+    let (mut real, mut imaginary) = ((0.0_f64, 0.0_f64), (0.0_f64, 0.0_f64));
+    for (style, (id, analysis)) in rows.iter().enumerate() {
+        let StabilityRegion { real: across, imaginary: along, boundary, .. } = analysis.stability_region(40);
+        real = (real.0.min(across.0), real.1.max(across.1));
+        imaginary = (imaginary.0.min(along.0), imaginary.1.max(along.1));
+        let count = boundary.len().saturating_sub(1).max(1) as f64;
+        marks.push(Mark::Line {
+            name: (*id).to_owned(),
+            parameter: (0..boundary.len()).map(|k| TAU * k as f64 / count).collect(),
+            points: boundary.iter().map(|mu| (mu.re, mu.im)).collect(),
+            style,
+        });
     }
+    let guides = [vec![(0.0, imaginary.0), (0.0, imaginary.1)], vec![(real.0, 0.0), (real.1, 0.0)]];
+    Figure {
+        name: format!("{}-boundary", stem(rows)),
+        title: title_of(rows, "boundary loci on x' = \u{3bb}x"),
+        x: Axis::new("Re \u{3c3}\u{3bb}", "re", Scale::Linear, real),
+        y: Axis::new("Im \u{3c3}\u{3bb}", "im", Scale::Linear, imaginary),
+        is_isometric: true,
+        parameter: Some("theta".to_owned()),
+        marks: guides.map(|points| Mark::Guide { points }).into_iter().chain(marks).collect(),
+    }
+}
+
+/// What becomes of one kind of noise.
+struct Gain {
+    column: &'static str,
+    name: &'static str,
+    of: fn(&FrequencyResponse) -> f64,
+}
+
+const GAINS: [Gain; 3] = [
+    Gain { column: "residual", name: "residual", of: |r| r.residual },
+    Gain { column: "feedforward", name: "feedforward / \u{3c3}", of: |r| r.feedforward_per_sigma },
+    Gain { column: "state", name: "joint state", of: |r| r.state },
+];
+
+impl Gain {
+    /// The line of a row at its best feedback step. A deadbeat loop lets nothing of some noise through: no line on a logarithmic axis.
+    fn line(&self, name: String, analysis: &Analysis, h: f64, style: usize) -> Option<Mark> {
+        let response = analysis.frequency_response(h, 600);
+        let points: Vec<(f64, f64)> = response.iter().map(|r| (r.omega, (self.of)(r))).collect();
+        let is_seen = points.iter().any(|p| p.1 >= 1e-9);
+        is_seen.then_some(Mark::Line { name, points, parameter: Vec::new(), style })
+    }
+}
+
+/// Returns how the closed loop at h_opt passes noise on, over the frequency; `None` where the row has no optimum.
+pub fn frequency_figure(id: &str, analysis: &Analysis) -> Option<Figure> {
+    let h = analysis.optimum()?.h;
+    let line = |(style, gain): (usize, &Gain)| gain.line(gain.name.to_owned(), analysis, h, style);
+    let marks = GAINS.iter().enumerate().filter_map(line).collect();
+    Some(gain_axes(format!("{id}-noise"), format!("{id}, h = {h:.4}: what becomes of noise"), marks))
+}
+
+/// One kind of noise for several rows, each at its own h_opt; `None` where none has an optimum or lets anything through.
+fn gain_figure(rows: &[(&str, &Analysis)], gain: &Gain) -> Option<Figure> {
+    let line = |(style, (id, analysis)): (usize, &(&str, &Analysis))| {
+        let h = analysis.optimum()?.h;
+        gain.line(format!("{id}, h = {h:.4}"), analysis, h, style)
+    };
+    let marks: Vec<Mark> = rows.iter().enumerate().filter_map(line).collect();
+    let title = format!("what becomes of noise in the {}", gain.name);
+    (!marks.is_empty()).then(|| gain_axes(format!("{}-noise-{}", stem(rows), gain.column), title, marks))
+}
+
+fn gain_axes(name: String, title: String, marks: Vec<Mark>) -> Figure {
     let values = || {
         marks.iter().flat_map(|mark| match mark {
             Mark::Line { points, .. } => points.as_slice(),
@@ -217,44 +286,12 @@ pub fn frequency_figure(rows: &[(&str, &Analysis)]) -> Option<Figure> {
         })
     };
     let high = values().map(|p| p.1).filter(|v| v.is_finite()).fold(0.0, f64::max);
-    let low = values().map(|p| p.1).filter(|v| *v > 1e-3 * high).fold(high, f64::min);
-    let names = rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
-    (!titles.is_empty()).then(|| Figure {
-        name: format!("{}-noise", names.join("-")),
-        title: format!("{}: what becomes of noise", titles.join("; ")),
+    let low = values().map(|p| p.1).filter(|v| *v > 1e-5 * high).fold(high, f64::min);
+    Figure {
+        name,
+        title,
         x: Axis::new("angular frequency \u{3c9} [rad per step]", "omega", Scale::Angle, (0.0, PI)),
         y: Axis::new("amplification", "gain", Scale::Logarithmic, (0.7 * low, 1.5 * high)),
-        is_isometric: false,
-        parameter: None,
-        marks,
-    })
-}
-
-/// Returns the rows of one number of steps and order as points (h_max, C), those that no other row beats in
-/// h_max, C and r_opt together marked.
-pub fn pareto_figure(steps: usize, order: usize, rows: &[&Formula], front: &[&Formula]) -> Figure {
-    let at = |row: &Formula| (row.feedback_range().value(), rational_to_f64(row.per_step_constant()).abs());
-    let on_front = |row: &&&Formula| front.iter().any(|f| f.id() == row.id());
-    let beaten: Vec<(f64, f64)> = rows.iter().filter(|row| !on_front(row)).map(|row| at(row)).collect();
-    let mut leaders: Vec<&Formula> = rows.iter().filter(on_front).copied().collect();
-    leaders.sort_by(|a, b| at(a).0.total_cmp(&at(b).0));
-    let mut marks = Vec::new();
-    if !beaten.is_empty() {
-        let name = "beaten by another".to_owned();
-        marks.push(Mark::Points { name, points: beaten, shape: Shape::Circle, style: 6 });
-    }
-    for (k, row) in leaders.iter().enumerate() {
-        let radius = row.optimum().map_or(f64::NAN, |optimum| optimum.radius);
-        let name = format!("{} (r_opt {radius:.3})", row.id());
-        let shape = [Shape::Disk, Shape::Diamond, Shape::Square, Shape::Cross][k % 4];
-        marks.push(Mark::Points { name, points: vec![at(row)], shape, style: k });
-    }
-    let high = |part: fn((f64, f64)) -> f64| 1.1 * rows.iter().map(|row| part(at(row))).fold(0.0, f64::max);
-    Figure {
-        name: format!("pareto-{steps}-{order}"),
-        title: format!("{steps} steps, order {order}: range against error"),
-        x: Axis::new("end of the feedback range h_max", "h_max", Scale::Linear, (0.0, high(|p| p.0))),
-        y: Axis::new("error per step |C|", "C", Scale::Linear, (0.0, high(|p| p.1))),
         is_isometric: false,
         parameter: None,
         marks,
@@ -291,7 +328,26 @@ mod tests {
 
     #[test]
     fn a_row_without_a_best_feedback_step_has_no_frequency_response() {
-        assert!(frequency_figure(&[row("la3-leapfrog")]).is_none());
-        assert!(frequency_figure(&[row("split-ab4")]).is_some());
+        let figure = |id| frequency_figure(id, row(id).1);
+        assert!(figure("la3-leapfrog").is_none());
+        assert!(figure("split-ab4").is_some());
+    }
+
+    #[test]
+    fn a_comparison_has_a_line_for_each_row_that_has_the_figure() {
+        let rows = ["la6-wang-guo", "split-ab4", "la3-leapfrog"].map(row);
+        let figures = comparison(&rows);
+        let lines =
+            |figure: &Figure| figure.marks.iter().filter(|mark| matches!(mark, Mark::Line { .. })).count();
+        let counts: Vec<(&str, usize)> = figures.iter().map(|f| (f.name.as_str(), lines(f))).collect();
+        // Leapfrog has no best feedback step; a deadbeat loop lets nothing of the joint state's noise through.
+        let expected = [
+            ("comparison-radius", 3),
+            ("comparison-boundary", 3),
+            ("comparison-noise-residual", 2),
+            ("comparison-noise-feedforward", 2),
+            ("comparison-noise-state", 1),
+        ];
+        assert_eq!(counts, expected);
     }
 }

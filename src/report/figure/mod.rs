@@ -8,6 +8,7 @@ mod axis;
 mod figure;
 mod formula;
 mod order;
+mod pareto;
 mod robot;
 mod sheet;
 mod style;
@@ -16,8 +17,10 @@ mod svg;
 pub use axis::{Axis, Scale};
 pub use figure::{Figure, Mark, Shape};
 pub use formula::{
-    frequency_figure, locus_figure, pareto_figure, portrait, radius_figure, region_figure, roots_figure,
+    boundary_figure, comparison, frequency_figure, locus_figure, portrait, radius_figure, region_figure,
+    roots_figure,
 };
 pub use order::order_figure;
+pub use pareto::{FrontPoint, pareto_figure};
 pub use robot::robot_figures;
 pub use sheet::sheet;
