@@ -219,7 +219,7 @@ fn strictly_stable_rows_lead_a_number_with_one_order_more() {
             Convergence::judge(&ladder.sigmas(), &errors, floor, Some(order), &Criteria::default())
         };
         let ladders = if order > 4 {
-            [Ladder::halvings(DURATION, 512, 3), Ladder::half_octaves(DURATION, 2048, 4)]
+            [Ladder::halvings(DURATION, 512, 3), Ladder::half_octaves(DURATION, 4096, 4)]
         } else {
             [Ladder::halvings(DURATION, 512, 5), Ladder::halvings(DURATION, 2048, 5)]
         };

@@ -54,12 +54,11 @@ fn row_marks(id: &str, sigmas: &[f64], seen: &Convergence, style: usize) -> Vec<
         shape: Shape::Disk,
         style,
     });
-    marks.push(Mark::Points {
-        name: format!("{id}, left out"),
-        points: points(&|mark| matches!(mark, Rung::PreAsymptotic | Rung::NearFloor)),
-        shape: Shape::Circle,
-        style,
-    });
+    let left_out = points(&|mark| matches!(mark, Rung::PreAsymptotic | Rung::NearFloor));
+    if !left_out.is_empty() {
+        let name = format!("{id}, left out");
+        marks.push(Mark::Points { name, points: left_out, shape: Shape::Circle, style });
+    }
     marks
 }
 
