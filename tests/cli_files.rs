@@ -122,8 +122,12 @@ fn schemas_are_json_and_know_the_keys() {
     let scenario = kinstep(&["schema", "scenario"]).expect(0).json();
     assert_eq!(scenario["additionalProperties"], false);
     let required = scenario["required"].as_array().unwrap();
-    for key in ["sigma", "duration", "arm"] {
+    for key in ["sigma", "duration"] {
         assert!(required.contains(&key.into()), "{key}");
+    }
+    for key in ["arm", "problem", "study"] {
+        assert!(scenario["properties"][key].is_object(), "{key}");
+        assert!(!required.contains(&key.into()), "a file holds arms or a problem: {key}");
     }
     assert!(!required.contains(&"formula".into()), "without one, the best general row is taken");
     assert!(scenario["properties"]["formula"].is_object());
