@@ -55,8 +55,11 @@ fn a_start_that_was_solved_for_is_written_down_and_gives_the_same_plan_again() {
     assert!(number(&start["distance"]) < 1e-11 && plan["arms"][0]["start_pose"].is_null(), "{plan}");
     assert_eq!(plan["shared"][0]["joints"], serde_json::json!(["lift", "waist"]));
     let written = std::fs::read_to_string(desk.path("one/scenario.toml")).unwrap();
-    for q in start["q0"].as_array().unwrap() {
-        assert!(written.contains(&q.to_string()), "{q} is not in\n{written}");
+    let written: toml::Table = written.parse().unwrap();
+    let kept = written["arm"][1]["q0"].as_array().unwrap();
+    for (q, kept) in start["q0"].as_array().unwrap().iter().zip(kept) {
+        // The JSON reader of this test may miss the last digit.
+        assert!((number(q) - kept.as_float().unwrap()).abs() < 1e-15, "{q} was written as {kept}");
     }
     desk.run(&["plan", "one/scenario.toml", "--out", "two"]).expect(0);
     let [one, two] =

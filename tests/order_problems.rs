@@ -107,7 +107,7 @@ fn orders_six_to_eight_show_in_extended_precision_where_doubles_can_not() {
     }
     for row in study("kepler", &[&fine[..], &["study.precision=extended"]].concat(), &ids) {
         assert!(row.seen.verdict.is_confirmed(), "{}: {}", row.id, row.report);
-        assert!(row.seen.floor < 1e-24 && row.seen.errors[3] < 1e-16, "{}: {}", row.id, row.report);
+        assert!(row.seen.floor < 1e-24 && row.seen.errors[3] < 1e-14, "{}: {}", row.id, row.report);
     }
 }
 
@@ -165,6 +165,8 @@ fn rows_that_may_not_run_and_gaps_that_do_not_divide_are_refused() {
     assert!(refused(&[], "ab44").contains("ab4"));
     assert!(refused(&["study.sigmas=[0.7, 0.35]"], "ab4").contains("shortened last step"));
     assert!(refused(&["study.steps=[200, 100]"], "ab4").contains("coarsest gap first"));
-    assert!(refused(&["sigma=1e-9"], "ab4").contains("steps"));
+    let mut endless = ScenarioText::parse(suite::text("swing").unwrap()).unwrap();
+    endless.set("sigma=1e-9").unwrap();
+    assert!(endless.scenario().unwrap_err().to_string().contains("steps"));
     assert!(refused(&["study.reference=ab44"], "ab4").contains("neither"));
 }
