@@ -1,7 +1,7 @@
 //! The cases of a sweep, by their numbers, and what came of each.
 
 use super::axis::{Axis, mix};
-use crate::planner::Plan;
+use crate::planner::{Plan, Planner, run_together};
 use crate::scenario::{FormulaRows, ScenarioError, ScenarioText};
 
 /// Scenarios, what varies in them, and how often distributions are drawn.
@@ -131,22 +131,38 @@ impl Sweep {
 
     /// Runs a case.
     pub fn run(&self, index: usize, rows: &FormulaRows) -> Record {
-        let case = self.case(index);
-        match self.plan(&case, rows) {
-            Ok(plan) => Record {
-                status: plan.status.name(),
-                reason: plan.reason.clone(),
-                figures: Some(Figures::of(&plan)),
-                case,
-            },
-            Err(refusal) => Record { case, status: "refused", reason: Some(refusal.message), figures: None },
-        }
+        self.run_all(&[index], rows).remove(0)
     }
 
-    fn plan(&self, case: &Case, rows: &FormulaRows) -> Result<Plan, ScenarioError> {
+    /// Runs cases, those alike [together](run_together); the records are the same as one by one.
+    pub fn run_all(&self, indices: &[usize], rows: &FormulaRows) -> Vec<Record> {
+        let (mut planners, mut records) = (Vec::new(), Vec::with_capacity(indices.len()));
+        for &index in indices {
+            let case = self.case(index);
+            match self.planner(&case, rows) {
+                Ok(planner) => {
+                    planners.push(planner);
+                    records.push(Record { case, status: "", reason: None, figures: None });
+                }
+                Err(refusal) => {
+                    let reason = Some(refusal.message);
+                    records.push(Record { case, status: "refused", reason, figures: None });
+                }
+            }
+        }
+        let started = records.iter_mut().filter(|record| record.reason.is_none());
+        for (record, plan) in started.zip(run_together(planners)) {
+            record.status = plan.status.name();
+            record.figures = Some(Figures::of(&plan));
+            record.reason = plan.reason;
+        }
+        records
+    }
+
+    fn planner(&self, case: &Case, rows: &FormulaRows) -> Result<Planner, ScenarioError> {
         let text = self.text(case)?;
         let scenario = text.scenario()?;
         let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
-        Ok(scenario.planner(table, text.folder())?.run())
+        scenario.planner(table, text.folder())
     }
 }
