@@ -4,7 +4,7 @@
 
 #![allow(clippy::print_stdout)]
 
-mod work;
+mod works;
 
 use std::hint::black_box;
 
@@ -12,11 +12,11 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let [name, count] = arguments.as_slice() else {
         // `cargo bench` runs every benchmark without arguments: nothing to count then.
-        println!("works: {}", work::NAMES.join("; "));
+        println!("works: {}", works::NAMES.join("; "));
         return;
     };
     let count: usize = count.parse().expect("the second argument is a number of repetitions");
-    let mut work = work::by_name(name).expect("the first argument names one of the works");
+    let mut work = works::by_name(name).expect("the first argument names one of the works");
     for _ in 0..count {
         black_box(work());
     }

@@ -4,7 +4,7 @@
     python3 scripts/performance.py                     # needs valgrind for the instruction counts
     python3 scripts/performance.py --peer              # Pinocchio beside it, in the same run
 
-Each work of benches/work/mod.rs is run as `counted NAME COUNT` with two counts, and the difference is divided by the
+Each work of benches/works/mod.rs is run as `counted NAME COUNT` with two counts, and the difference is divided by the
 difference of the counts: what is done once falls out. Instructions are counted by callgrind. Times are medians of rounds
 in which the works and the peer take turns, so that a busy machine disturbs them alike.
 

@@ -1,4 +1,4 @@
-// The works of benches/work/mod.rs done with Pinocchio and Eigen: `pinocchio URDF NAME COUNT`.
+// The works of benches/works/mod.rs done with Pinocchio and Eigen: `pinocchio URDF NAME COUNT`.
 //
 // As with the Rust side, the program is run with two counts and the difference is taken. The step is that of the
 // six-instant look-ahead formula of Wang and Guo (2020) on two arms with full poses: kinematics, Jacobian, residual,

@@ -60,13 +60,15 @@ impl<A: LaneArray> Bundle<A> {
     ) {
         let lanes = A::each(lane);
         let lanes = lanes.as_ref();
-        for (computed, (arm, _)) in self.computed.as_mut().iter_mut().zip(lanes) {
-            if arm.motion.recorded(t).is_none() {
-                *computed = arm.motion.at(t);
+        let recorded = A::each(|lane| lanes[lane].0.motion.recorded(t));
+        let recorded = recorded.as_ref();
+        for (lane, computed) in self.computed.as_mut().iter_mut().enumerate() {
+            if recorded[lane].is_none() {
+                *computed = lanes[lane].0.motion.at(t);
             }
         }
         let computed = self.computed.as_ref();
-        let references = A::each(|lane| lanes[lane].0.motion.recorded(t).unwrap_or(&computed[lane]));
+        let references = A::each(|lane| recorded[lane].unwrap_or(&computed[lane]));
         let evaluation = Evaluation {
             chains: &self.chains,
             scratch: &mut self.scratch,

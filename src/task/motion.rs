@@ -96,14 +96,10 @@ impl Motion {
     pub fn at(&self, t: f64) -> Reference {
         match &self.course {
             Course::Curve(curve) => curve.at(t),
-            Course::Samples { references, sigma } => {
-                let last = references.len() - 1;
-                let mut reference = references[((t / sigma + 0.5) as usize).min(last)];
-                if self.recorded(t).is_none() {
-                    reference.twist = Vector6::zeros();
-                }
-                reference
-            }
+            Course::Samples { references, .. } => self.recorded(t).copied().unwrap_or_else(|| {
+                let end = if t < 0.0 { &references[0] } else { &references[references.len() - 1] };
+                Reference { twist: Vector6::zeros(), ..*end }
+            }),
         }
     }
 
