@@ -16,6 +16,7 @@ pub mod scenario;
 pub mod scheme;
 pub mod study;
 pub mod task;
+pub mod trajectory;
 
 #[cfg(feature = "cli")]
 #[doc(hidden)]

@@ -10,8 +10,9 @@ use super::progress::Progress;
 use crate::formula::{Formula, FormulaTable};
 use crate::math::figure;
 use crate::planner::{LimitKind, Plan, PlanStatus, Planner};
-use crate::report::{PlanCsv, PlanFormat, PlanJson, PlanText};
+use crate::report::{PlanFormat, PlanJson, PlanText};
 use crate::scenario::{FormulaRows, Real, Scenario, ScenarioText};
+use crate::trajectory::{About, Csv, Recording, Trajectory, TrajectoryFormat};
 
 /// The scenario that runs without a file.
 const BUILTIN: &str = include_str!("../../examples/dual_panda.toml");
@@ -39,10 +40,13 @@ pub(super) fn run(
     // What is written down says what was run, whatever the default becomes later.
     scenario.formula.get_or_insert_with(|| plan.formula.clone());
     if let Some(folder) = &folder {
-        folder.write("trajectory.csv", |out| PlanCsv.write(&plan, out))?;
+        let stage = scenario.stage(text.folder()).map_err(|e| text.placed(e))?;
+        let again = scenario.relocated(text.folder(), own, folder.path())?.to_toml();
+        let trajectory = Trajectory::of(&plan, Some(About::of(&plan, &again, &stage)));
+        let recording = Recording { trajectory: &trajectory, stage: &stage };
+        folder.write("trajectory.csv", |out| Csv.write(recording, out))?;
         folder.write("plan.json", |out| PlanJson.write(&plan, out))?;
-        let again = scenario.relocated(text.folder(), own, folder.path())?;
-        folder.write("scenario.toml", |out| out.write_all(again.to_toml().as_bytes()))?;
+        folder.write("scenario.toml", |out| out.write_all(again.as_bytes()))?;
     }
     if output.wants_json() {
         output.text(&written(&PlanJson, &plan))?;

@@ -12,8 +12,9 @@ use super::output::{Output, Show};
 use super::progress::Progress;
 use crate::formula::FormulaTable;
 use crate::planner::Plan;
-use crate::report::{PlanCsv, PlanFormat, Table, paper_page, short, write_whole};
+use crate::report::{Table, paper_page, short, write_whole};
 use crate::scenario::{Scenario, ScenarioText};
+use crate::trajectory::{Csv, Recording, Trajectory, TrajectoryFormat};
 
 const EXAMPLE_A1: &str = include_str!("../../examples/planar_dual.toml");
 const EXAMPLE_A2: &str = include_str!("../../examples/planar_dual_a2.toml");
@@ -186,7 +187,9 @@ fn run_all(experiments: &[Experiment], folder: Option<&Folder>) -> Result<Reprod
         let plan = planner.run_with(|done, _| progress.step(done));
         progress.next(plan.steps);
         if let (Some(folder), Some(name)) = (folder, experiment.trajectory_name()) {
-            folder.write(&name, |out| PlanCsv.write(&plan, out))?;
+            let (trajectory, stage) = (Trajectory::of(&plan, None), experiment.scenario()?.stage(None)?);
+            let recording = Recording { trajectory: &trajectory, stage: &stage };
+            folder.write(&name, |out| Csv.write(recording, out))?;
         }
         outcomes.push(experiment.outcome(&plan));
     }

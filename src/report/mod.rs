@@ -6,7 +6,6 @@ mod formula_page;
 mod order;
 mod paper_page;
 mod plan;
-mod plan_csv;
 #[cfg(feature = "cli")]
 mod plan_json;
 mod plan_text;
@@ -17,7 +16,6 @@ pub use formula_page::{FormulaPage, pareto_front};
 pub use order::OrderPage;
 pub use paper_page::paper_page;
 pub use plan::PlanFormat;
-pub use plan_csv::PlanCsv;
 #[cfg(feature = "cli")]
 pub use plan_json::PlanJson;
 pub use plan_text::PlanText;

@@ -14,7 +14,7 @@ use super::start_pose::StartPose;
 use crate::formula::{Duty, Formula, FormulaTable};
 use crate::law::Pseudoinverse;
 use crate::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
-use crate::robot::{Chain, ChainError, ChainJoint, PositionsError, UrdfOptions};
+use crate::robot::{Chain, ChainError, ChainJoint, PositionsError, Robot, UrdfOptions};
 use crate::task::{self, Leaning, Motion, Planar, PlanarCurve, TimeLaw, Turning};
 
 impl Scenario {
@@ -207,7 +207,12 @@ fn refused_positions(at: &KeyPath, problem: &PositionsError) -> ScenarioError {
     ScenarioError::at(ErrorKind::Scenario, &at, problem)
 }
 
-fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
+/// Returns where the robot of an arm comes from, and the robot as it is there.
+pub(super) fn read_robot(
+    at: &KeyPath,
+    spec: &ArmSpec,
+    folder: Option<&Path>,
+) -> Result<(RobotSource, Robot), ScenarioError> {
     let refuse = |e: ScenarioError| ScenarioError::at(e.kind, &at.key("robot"), e.message);
     let source = RobotSource::find(&spec.robot, folder).map_err(refuse)?;
     let robot = source.read(&UrdfOptions::default()).map_err(|e| {
@@ -216,7 +221,12 @@ fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, S
         let path = Some(at.key("robot")).filter(|_| refusal.kind == ErrorKind::File);
         ScenarioError { message, path, ..refusal }
     })?;
-    let (robot, tip) = spec.prepared(at, robot, folder)?;
+    Ok((source, robot))
+}
+
+fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
+    let (source, robot) = read_robot(at, spec, folder)?;
+    let (robot, tip) = spec.tooled(at, spec.changed(at, robot, folder)?)?;
     let chain = robot.chain(&spec.base, &tip).map_err(|e| {
         let key = if robot.link(&spec.base).is_none() { "base" } else { "tip" };
         let is_free = matches!(e, ChainError::UnsupportedJoint { .. });
@@ -263,7 +273,7 @@ impl Mount {
 
 impl ArmSpec {
     /// Whether two arms are parts of one machine: of the same robot, with their bases at the same place.
-    fn is_same_machine(&self, other: &Self) -> bool {
+    pub(super) fn is_same_machine(&self, other: &Self) -> bool {
         (&self.robot, &self.base, &self.mount) == (&other.robot, &other.base, &other.mount)
             && (&self.calibration, &self.lock) == (&other.calibration, &other.lock)
     }

@@ -17,6 +17,7 @@ mod path_spec;
 mod real;
 mod robot_edits;
 mod robots;
+mod staging;
 mod start_pose;
 mod study_spec;
 pub mod suite;

@@ -53,14 +53,13 @@ pub(crate) fn tool_name(robot: &Robot, tip: &str) -> String {
 }
 
 impl ArmSpec {
-    /// Returns the arm's robot, calibrated, with its locked joints held and its tool put on, and the link at which the
-    /// chain then ends.
-    pub(super) fn prepared(
+    /// Returns the arm's robot, calibrated and with its locked joints held.
+    pub(super) fn changed(
         &self,
         at: &KeyPath,
         robot: Robot,
         folder: Option<&Path>,
-    ) -> Result<(Robot, String), ScenarioError> {
+    ) -> Result<Robot, ScenarioError> {
         let mut robot = robot;
         if let Some(reference) = &self.calibration {
             let at = at.key("calibration");
@@ -77,6 +76,11 @@ impl ArmSpec {
                 .with_locked(joint, &numbers)
                 .map_err(|e| ScenarioError::at(ErrorKind::Robot, &at.key("lock").key(joint), e))?;
         }
+        Ok(robot)
+    }
+
+    /// Returns the robot with the arm's tool put on, and the link at which the chain then ends.
+    pub(super) fn tooled(&self, at: &KeyPath, robot: Robot) -> Result<(Robot, String), ScenarioError> {
         if self.tool.is_identity() || robot.link(&self.tip).is_none() {
             return Ok((robot, self.tip.clone()));
         }

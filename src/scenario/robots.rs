@@ -70,15 +70,33 @@ impl RobotSource {
 
     /// Returns the place of a finding in the robot's text.
     pub fn place(&self, line: usize, column: usize) -> Place {
-        let text = match self {
+        Place::of_line(Some(self.label()), &self.text(), line, column)
+    }
+
+    /// Returns the robot's text as it stands; empty where it can not be read.
+    fn text(&self) -> String {
+        match self {
             Self::Embedded(name) => embedded::text(name).unwrap_or_default().to_owned(),
             Self::Text(text) => text.clone(),
             Self::File(path) => {
                 let bytes = read_bounded(path, MAX_BYTES as u64).ok().flatten().unwrap_or_default();
                 String::from_utf8(bytes).unwrap_or_default()
             }
-        };
-        Place::of_line(Some(self.label()), &text, line, column)
+        }
+    }
+
+    /// Returns the text where it is URDF.
+    pub fn urdf(&self) -> Option<String> {
+        let text = self.text();
+        text.trim_start_matches('\u{feff}').trim_ascii_start().starts_with('<').then_some(text)
+    }
+
+    /// Returns the folder of the robot's file, if it is one.
+    pub fn folder(&self) -> Option<PathBuf> {
+        match self {
+            Self::File(path) => path.parent().map(Path::to_owned),
+            Self::Embedded(_) | Self::Text(_) => None,
+        }
     }
 
     /// Returns the refusal that a failed [`RobotSource::read`] means, with its place in the file.

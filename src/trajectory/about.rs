@@ -1,0 +1,80 @@
+//! What made a trajectory.
+
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+
+use super::Stage;
+use crate::planner::Plan;
+
+/// What made a trajectory: enough to make it again, and to tell whether it is the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct About {
+    /// Version of kinstep.
+    pub version: String,
+    /// Id of the formula.
+    pub formula: String,
+    /// Sampling gap \[s\].
+    pub sigma: f64,
+    /// Feedback step.
+    pub h: f64,
+    /// Name of the starter.
+    pub start: String,
+    /// SHA-256 of the scenario as it was run, in hexadecimal digits.
+    pub scenario: String,
+    /// Each arm's name with the SHA-256 of its robot, as URDF, in hexadecimal digits.
+    pub robots: Vec<(String, String)>,
+}
+
+impl About {
+    /// Returns what there is to say of a plan of the scenario with this text, on that stage.
+    pub fn of(plan: &Plan, scenario: &str, stage: &Stage) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            formula: plan.formula.clone(),
+            sigma: plan.sigma,
+            h: plan.h,
+            start: plan.start.to_owned(),
+            scenario: fingerprint(scenario),
+            robots: stage
+                .arms
+                .iter()
+                .map(|arm| (arm.name.clone(), stage.machines[arm.machine].fingerprint()))
+                .collect(),
+        }
+    }
+
+    /// The entries as text, for formats that carry keys and values; numbers read back as they were.
+    pub fn entries(&self) -> Vec<(String, String)> {
+        let plain = [
+            ("version", self.version.clone()),
+            ("formula", self.formula.clone()),
+            ("sigma", self.sigma.to_string()),
+            ("h", self.h.to_string()),
+            ("start", self.start.clone()),
+            ("scenario_sha256", self.scenario.clone()),
+        ];
+        let plain = plain.into_iter().map(|(key, value)| (format!("kinstep.{key}"), value));
+        let robot = |(arm, hash): &(String, String)| (format!("kinstep.robot_sha256.{arm}"), hash.clone());
+        plain.chain(self.robots.iter().map(robot)).collect()
+    }
+}
+
+/// Returns the SHA-256 of a text in hexadecimal digits.
+pub(super) fn fingerprint(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().fold(String::new(), |mut digits, byte| {
+        // Writing to a String can not fail.
+        let _ = write!(digits, "{byte:02x}");
+        digits
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fingerprint_is_the_standard_hash() {
+        // FIPS 180-4, the example of one block.
+        assert_eq!(fingerprint("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+}
