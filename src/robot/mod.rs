@@ -27,6 +27,7 @@ mod toml_table;
 mod tool;
 mod tree;
 mod urdf;
+mod visual;
 
 pub use calibration::{Calibration, CalibrationError, JointCorrection};
 pub use chain::{Chain, ChainJoint, LimitViolation};
@@ -41,5 +42,6 @@ pub use positions::PositionsError;
 pub use tool::ToolError;
 pub use tree::{TreeRow, TreeRows};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, ReadError, UrdfError, UrdfOptions};
+pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};

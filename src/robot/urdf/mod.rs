@@ -19,6 +19,7 @@ mod outline;
 mod places;
 pub(super) mod report;
 mod values;
+mod visual;
 
 use std::fs::File;
 use std::io::Read;
@@ -27,6 +28,7 @@ use std::path::Path;
 pub use error::{ReadError, UrdfError};
 
 use super::Robot;
+pub(super) use visual::read as read_visuals;
 use report::Report;
 
 /// Longest text that is read, in bytes (64 MiB).
