@@ -88,9 +88,13 @@ pub(super) struct PlanArguments {
     /// The scenario, a TOML file (`kinstep schema scenario` has its keys)
     pub(super) scenario: Option<PathBuf>,
 
-    /// Folder for trajectory.csv, plan.json and scenario.toml; made if it is not there
+    /// Folder for trajectory.csv, plan.json, scenario.toml and report.html; made if it is not there
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+
+    /// Leave out report.html, the page with the replay and the figures
+    #[arg(long, requires = "out")]
+    pub(super) no_report: bool,
 
     /// Lay a value over the scenario; arms by name. May be given again
     #[arg(long, value_name = "KEY.PATH=VALUE")]

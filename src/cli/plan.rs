@@ -7,10 +7,9 @@ use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use super::output::Output;
 use super::progress::Progress;
-use crate::formula::{Formula, FormulaTable};
-use crate::math::figure;
-use crate::planner::{LimitKind, Plan, PlanStatus, Planner};
-use crate::report::{PlanFormat, PlanJson, PlanText};
+use crate::formula::FormulaTable;
+use crate::planner::{Plan, PlanStatus, Planner};
+use crate::report::{PlanFormat, PlanJson, PlanPage, PlanText, Suggestion, suggestions};
 use crate::scenario::{FormulaRows, Real, Scenario, ScenarioText};
 use crate::trajectory::{About, Csv, Recording, Trajectory, TrajectoryFormat};
 
@@ -19,6 +18,8 @@ const BUILTIN: &str = include_str!("../../examples/dual_panda.toml");
 
 /// The files of `--out`.
 const NAMES: [&str; 3] = ["trajectory.csv", "plan.json", "scenario.toml"];
+/// The page that is among them unless it is not wanted.
+const PAGE: &str = "report.html";
 
 pub(super) fn run(
     arguments: &PlanArguments,
@@ -32,8 +33,11 @@ pub(super) fn run(
     let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
     let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
     keep_starts(&mut scenario, &planner);
-    let folder =
-        arguments.out.as_deref().map(|path| Folder::open(path, arguments.force, &NAMES)).transpose()?;
+    let folder = arguments
+        .out
+        .as_deref()
+        .map(|path| Folder::open(path, arguments.force, &names(arguments)))
+        .transpose()?;
     let mut plan = run_planner(planner);
     plan.warnings.extend(rows.warnings());
     let names_formula = scenario.formula.is_some();
@@ -47,6 +51,18 @@ pub(super) fn run(
         folder.write("trajectory.csv", |out| Csv.write(recording, out))?;
         folder.write("plan.json", |out| PlanJson.write(&plan, out))?;
         folder.write("scenario.toml", |out| out.write_all(again.as_bytes()))?;
+        if !arguments.no_report {
+            let page = PlanPage {
+                title: &title(arguments),
+                plan: &plan,
+                recording,
+                figures: &[],
+                scenario: &again,
+                command: "kinstep plan scenario.toml",
+                suggestions: &suggestions(&plan, table, &scenario),
+            };
+            folder.write(PAGE, |out| page.write(out))?;
+        }
     }
     if output.wants_json() {
         output.text(&written(&PlanJson, &plan))?;
@@ -71,6 +87,18 @@ pub(super) fn run(
         ))?;
     }
     Ok(exit(&plan))
+}
+
+/// The names of the files that are written.
+fn names(arguments: &PlanArguments) -> Vec<&'static str> {
+    let page = (!arguments.no_report).then_some(PAGE);
+    NAMES.into_iter().chain(page).collect()
+}
+
+/// What the page is called.
+fn title(arguments: &PlanArguments) -> String {
+    let name = arguments.scenario.as_ref().and_then(|file| file.file_stem());
+    name.map_or_else(|| "The built-in scenario".to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
 /// Puts joint positions that were solved for into the scenario: what is written down says what was run.
@@ -125,12 +153,16 @@ fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, scenari
     let mut next = Vec::new();
     let mut written = String::new();
     match &arguments.out {
-        Some(folder) => written = format!("\nWritten to {}: {}.\n", folder.display(), NAMES.join(", ")),
-        None => next.push(("--out results".to_owned(), "the trajectory as a file".to_owned())),
+        Some(folder) => {
+            written = format!("\nWritten to {}: {}.\n", folder.display(), names(arguments).join(", "))
+        }
+        None => {
+            next.push(Suggestion::new("--out results", "the trajectory as a file, and a page to look at"))
+        }
     }
     next.extend(suggestions(plan, table, scenario));
-    let mut lines: Vec<[String; 2]> =
-        next.into_iter().map(|(arguments, why)| [format!("kinstep plan{name} {arguments}"), why]).collect();
+    let line = |next: Suggestion| [format!("kinstep plan{name} {}", next.arguments), next.reason];
+    let mut lines: Vec<[String; 2]> = next.into_iter().map(line).collect();
     if arguments.scenario.is_none() {
         lines.push(["kinstep schema scenario", "every key of a scenario of your own"].map(str::to_owned));
     }
@@ -138,55 +170,4 @@ fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, scenari
     let lines: Vec<String> =
         lines.iter().map(|[command, why]| format!("  {command:width$}  # {why}\n")).collect();
     if lines.is_empty() { written } else { format!("{written}\nNext:\n{}", lines.concat()) }
-}
-
-/// What would make this plan better, as arguments and the reason.
-fn suggestions(plan: &Plan, table: &FormulaTable, scenario: &Scenario) -> Vec<(String, String)> {
-    let mut next = Vec::new();
-    let Ok(formula) = table.get(&plan.formula) else { return next };
-    let best = formula.optimum().map(|optimum| format!("{:.3}", optimum.h));
-    if plan.status == PlanStatus::Diverged && !formula.feedback_range().contains(plan.h) {
-        next.extend(
-            best.map(|h| (format!("--set law.h={h}"), "the formula's best feedback step".to_owned())),
-        );
-    }
-    if !plan.is_completed() {
-        return next;
-    }
-    if let Some(excess) = velocity_excess(plan) {
-        let longer = (scenario.duration.value() * excess * 1.05).ceil();
-        next.push((
-            format!("--set duration={longer}"),
-            "slow enough for the joints' velocity limits".to_owned(),
-        ));
-    }
-    if errors_follow_the_order(plan, formula) {
-        let halvings = formula.order() + usize::from(scenario.law.gain.is_none());
-        let (fold, held) =
-            (1_u64 << halvings.min(60), if scenario.law.gain.is_some() { "gain" } else { "h" });
-        let why = format!("errors about {fold} times smaller: order {} at the same {held}", formula.order());
-        next.push((format!("--set sigma={}", figure(plan.sigma / 2.0)), why));
-    }
-    if plan.formula != "split-ab6" {
-        let arguments = "--set formula=split-ab6 --set law.h=1 --set start=rk8".to_owned();
-        next.push((arguments, "a deadbeat loop of order 6".to_owned()));
-    }
-    next
-}
-
-/// Whether a smaller gap may be promised to make the errors smaller: they stand above the round-off, and the loop is fast
-/// enough to settle within the run.
-fn errors_follow_the_order(plan: &Plan, formula: &Formula) -> bool {
-    const ROUND_OFF: f64 = 1e-13;
-    const SETTLED: f64 = 1e-3;
-    let worst = plan.arms.iter().map(|arm| arm.max_error).fold(0.0, f64::max);
-    let left_over = formula.spectral_radius(plan.h).powf(plan.steps as f64 / 2.0);
-    worst > ROUND_OFF && left_over < SETTLED
-}
-
-/// By what factor the worst joint velocity exceeds its limit, where one does: velocities fall like 1/duration.
-fn velocity_excess(plan: &Plan) -> Option<f64> {
-    let all = plan.arms.iter().flat_map(|arm| &arm.violations);
-    let excess = all.filter(|v| v.kind == LimitKind::Velocity).map(|v| (v.value / v.limit).abs());
-    excess.filter(|excess| excess.is_finite()).reduce(f64::max)
 }

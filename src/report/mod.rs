@@ -1,9 +1,12 @@
 //! Results written down: one trait, one file per format, and files that are whole or not there.
 
+mod advice;
 pub mod figure;
 mod file;
 mod formula_page;
 mod order;
+#[cfg(feature = "cli")]
+mod page;
 mod paper_page;
 mod plan;
 #[cfg(feature = "cli")]
@@ -11,9 +14,12 @@ mod plan_json;
 mod plan_text;
 mod table;
 
+pub use advice::{Suggestion, suggestions};
 pub use file::{WriteError, write_whole};
 pub use formula_page::{FormulaPage, pareto_front};
 pub use order::OrderPage;
+#[cfg(feature = "cli")]
+pub use page::PlanPage;
 pub use paper_page::paper_page;
 pub use plan::PlanFormat;
 #[cfg(feature = "cli")]

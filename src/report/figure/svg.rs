@@ -34,6 +34,12 @@ impl Figure {
         svg
     }
 
+    /// Returns where the axes are in the drawing: left, right, top and bottom [px], and the ends of the horizontal axis.
+    pub fn window(&self) -> [f64; 6] {
+        let Layout { left, top, width, height, .. } = self.layout();
+        [left, left + width, top, top + height, self.x.range.0, self.x.range.1]
+    }
+
     /// Names of the legend, each once, in the order of the marks.
     fn legend(&self) -> Vec<(&str, &Mark)> {
         let mut entries: Vec<(&str, &Mark)> = Vec::new();

@@ -28,8 +28,8 @@ use std::path::Path;
 pub use error::{ReadError, UrdfError};
 
 use super::Robot;
-pub(super) use visual::read as read_visuals;
 use report::Report;
+pub(super) use visual::read as read_visuals;
 
 /// Longest text that is read, in bytes (64 MiB).
 pub const MAX_BYTES: usize = 64 << 20;

@@ -62,12 +62,9 @@ fn colour_of(material: Node<'_, '_>) -> Option<Colour> {
     Some(rgba.map(|part| part.clamp(0.0, 1.0)))
 }
 
-fn read_visual(
-    link: &str,
-    visual: Node<'_, '_>,
-    palette: &HashMap<&str, Colour>,
-) -> Result<Visual, String> {
-    let geometry = element::children_named(visual, "geometry").next().ok_or("a shape without `<geometry>`")?;
+fn read_visual(link: &str, visual: Node<'_, '_>, palette: &HashMap<&str, Colour>) -> Result<Visual, String> {
+    let geometry =
+        element::children_named(visual, "geometry").next().ok_or("a shape without `<geometry>`")?;
     let shape = element::children(geometry).next().ok_or("an empty `<geometry>`")?;
     let material = element::children_named(visual, "material").next();
     let named = |material: Node<'_, '_>| palette.get(material.attribute("name")?).copied();

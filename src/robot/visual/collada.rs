@@ -15,7 +15,8 @@ const MOST_DEPTH: usize = 64;
 const MOST_ELEMENTS: u32 = 1_000_000;
 
 pub(super) fn read(text: &str) -> Result<Mesh, String> {
-    let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_ELEMENTS, ..ParsingOptions::default() };
+    let options =
+        ParsingOptions { allow_dtd: false, nodes_limit: MOST_ELEMENTS, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|error| error.to_string())?;
     let root = document.root_element();
     if root.tag_name().name() != "COLLADA" {
@@ -137,7 +138,8 @@ impl<'a, 'i> Scene<'a, 'i> {
             let places: Vec<usize> = numbers(list);
             let places = places.chunks_exact(stride).map(|corner| corner[first]);
             // A face that names a corner that is not there is left out by leaving the whole list out.
-            let corners: Vec<[f32; 3]> = places.map(|place| corners.get(place).copied()).collect::<Option<_>>()?;
+            let corners: Vec<[f32; 3]> =
+                places.map(|place| corners.get(place).copied()).collect::<Option<_>>()?;
             match kind {
                 "triangles" => triangles.extend(corners.as_chunks::<3>().0),
                 "polygons" => triangles.extend(fan(&corners)),

@@ -77,7 +77,9 @@ impl Mesh {
             "stl" => stl::read(bytes)?,
             "obj" => obj::read(&String::from_utf8_lossy(bytes))?,
             "dae" => collada::read(&String::from_utf8_lossy(bytes))?,
-            other => return Err(format!("\"{other}\" is not among the formats that are read: stl, obj, dae")),
+            other => {
+                return Err(format!("\"{other}\" is not among the formats that are read: stl, obj, dae"));
+            }
         };
         for part in &mut mesh.parts {
             part.triangles.retain(|triangle| triangle.iter().flatten().all(|number| number.is_finite()));

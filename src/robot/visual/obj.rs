@@ -25,7 +25,8 @@ pub(super) fn read(text: &str) -> Result<Mesh, String> {
 }
 
 fn corner(line: &str) -> Result<[f32; 3], String> {
-    let numbers: Vec<f32> = line.split_whitespace().skip(1).filter_map(|number| number.parse().ok()).collect();
+    let numbers: Vec<f32> =
+        line.split_whitespace().skip(1).filter_map(|number| number.parse().ok()).collect();
     let three = numbers.get(..3).and_then(|three| three.try_into().ok());
     three.ok_or_else(|| format!("`{line}` is not a corner"))
 }

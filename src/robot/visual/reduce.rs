@@ -79,7 +79,9 @@ mod tests {
             let (sine, cosine) = (std::f32::consts::TAU * i as f32 / count as f32).sin_cos();
             [cosine, sine, z]
         };
-        let pair = |i: usize| [[at(i, 0.0), at(i + 1, 0.0), at(i, 1.0)], [at(i, 1.0), at(i + 1, 0.0), at(i + 1, 1.0)]];
+        let pair = |i: usize| {
+            [[at(i, 0.0), at(i + 1, 0.0), at(i, 1.0)], [at(i, 1.0), at(i + 1, 0.0), at(i + 1, 1.0)]]
+        };
         Mesh { parts: vec![MeshPart { colour: None, triangles: (0..count).flat_map(pair).collect() }] }
     }
 
