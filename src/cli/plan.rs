@@ -5,11 +5,13 @@ use std::path::Path;
 use super::arguments::PlanArguments;
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
+use super::formula_plot::draw;
 use super::output::Output;
 use super::progress::Progress;
 use crate::formula::{Formula, FormulaTable};
 use crate::math::figure;
 use crate::planner::{LimitKind, Plan, PlanStatus, Planner};
+use crate::report::figure::plan_figures;
 use crate::report::{PlanFormat, PlanJson, PlanText};
 use crate::scenario::{FormulaRows, Real, Scenario, ScenarioText};
 use crate::trajectory::{About, Csv, Recording, Trajectory, TrajectoryFormat};
@@ -19,6 +21,9 @@ const BUILTIN: &str = include_str!("../../examples/dual_panda.toml");
 
 /// The files of `--out`.
 const NAMES: [&str; 3] = ["trajectory.csv", "plan.json", "scenario.toml"];
+
+/// The folder of the pictures in it.
+const FIGURES: &str = "figures";
 
 pub(super) fn run(
     arguments: &PlanArguments,
@@ -47,6 +52,9 @@ pub(super) fn run(
         folder.write("trajectory.csv", |out| Csv.write(recording, out))?;
         folder.write("plan.json", |out| PlanJson.write(&plan, out))?;
         folder.write("scenario.toml", |out| out.write_all(again.as_bytes()))?;
+        if arguments.figures {
+            draw(&folder.path().join(FIGURES), arguments.force, "", &plan_figures(recording, Some(&plan)))?;
+        }
     }
     if output.wants_json() {
         output.text(&written(&PlanJson, &plan))?;

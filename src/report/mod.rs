@@ -1,5 +1,6 @@
 //! Results written down: one trait, one file per format, and files that are whole or not there.
 
+mod decimate;
 pub mod figure;
 mod file;
 mod formula_page;
@@ -11,6 +12,7 @@ mod plan_json;
 mod plan_text;
 mod table;
 
+pub use decimate::decimate;
 pub use file::{WriteError, write_whole};
 pub use formula_page::{FormulaPage, pareto_front};
 pub use order::OrderPage;
