@@ -39,6 +39,7 @@ pub(super) enum Command {
 Examples:
   kinstep plan
   kinstep plan mine.toml --out results --force
+  kinstep plan mine.toml --out results --figures
   kinstep plan mine.toml --set sigma=0.005 --set law.h=0.3
   kinstep plan mine.toml --set formula=split-ab6 --set law.h=1 --json
   kinstep plan mine.toml --set 'arm.left.q0=[0.1, 0.2, \"pi/2\", 0]'
@@ -95,6 +96,10 @@ pub(super) struct PlanArguments {
     /// Leave out report.html, the page with the replay and the figures
     #[arg(long, requires = "out")]
     pub(super) no_report: bool,
+
+    /// Draw the plan too, into the folder figures of --out: a picture a file, its numbers beside it as CSV
+    #[arg(long, requires = "out")]
+    pub(super) figures: bool,
 
     /// Lay a value over the scenario; arms by name. May be given again
     #[arg(long, value_name = "KEY.PATH=VALUE")]
@@ -165,9 +170,13 @@ pub(super) struct SweepArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ReproduceArguments {
-    /// Folder for the trajectories and reproduce.json; made if it is not there
+    /// Folder for the trajectories, a page of each and reproduce.json; made if it is not there
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+
+    /// Leave out the pages
+    #[arg(long, requires = "out")]
+    pub(super) no_report: bool,
 
     /// Write the page about the paper, in Markdown, with every order measured anew
     #[arg(long, value_name = "FILE", conflicts_with = "out")]

@@ -5,10 +5,12 @@ use std::path::Path;
 use super::arguments::PlanArguments;
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
+use super::formula_plot::draw;
 use super::output::Output;
 use super::progress::Progress;
 use crate::formula::FormulaTable;
 use crate::planner::{Plan, PlanStatus, Planner};
+use crate::report::figure::plan_figures;
 use crate::report::{PlanFormat, PlanJson, PlanPage, PlanText, Suggestion, suggestions};
 use crate::scenario::{FormulaRows, Real, Scenario, ScenarioText};
 use crate::trajectory::{About, Csv, Recording, Trajectory, TrajectoryFormat};
@@ -20,6 +22,9 @@ const BUILTIN: &str = include_str!("../../examples/dual_panda.toml");
 const NAMES: [&str; 3] = ["trajectory.csv", "plan.json", "scenario.toml"];
 /// The page that is among them unless it is not wanted.
 const PAGE: &str = "report.html";
+
+/// The folder of the pictures in it.
+const FIGURES: &str = "figures";
 
 pub(super) fn run(
     arguments: &PlanArguments,
@@ -51,12 +56,16 @@ pub(super) fn run(
         folder.write("trajectory.csv", |out| Csv.write(recording, out))?;
         folder.write("plan.json", |out| PlanJson.write(&plan, out))?;
         folder.write("scenario.toml", |out| out.write_all(again.as_bytes()))?;
+        let figures = plan_figures(recording, Some(&plan));
+        if arguments.figures {
+            draw(&folder.path().join(FIGURES), arguments.force, "", &figures)?;
+        }
         if !arguments.no_report {
             let page = PlanPage {
                 title: &title(arguments),
                 plan: &plan,
                 recording,
-                figures: &[],
+                figures: &figures,
                 scenario: &again,
                 command: "kinstep plan scenario.toml",
                 suggestions: &suggestions(&plan, table, &scenario),

@@ -12,9 +12,10 @@ use super::output::{Output, Show};
 use super::progress::Progress;
 use crate::formula::FormulaTable;
 use crate::planner::Plan;
-use crate::report::{Table, paper_page, short, write_whole};
+use crate::report::figure::plan_figures;
+use crate::report::{PlanPage, Table, paper_page, short, write_whole};
 use crate::scenario::{Scenario, ScenarioText};
-use crate::trajectory::{Csv, Recording, Trajectory, TrajectoryFormat};
+use crate::trajectory::{About, Csv, Recording, Trajectory, TrajectoryFormat};
 
 const EXAMPLE_A1: &str = include_str!("../../examples/planar_dual.toml");
 const EXAMPLE_A2: &str = include_str!("../../examples/planar_dual_a2.toml");
@@ -80,8 +81,31 @@ impl Experiment {
         Ok(scenario)
     }
 
-    fn trajectory_name(&self) -> Option<String> {
-        (self.id != GRID).then(|| format!("{}-{}-{}.csv", self.id, self.formula, self.sigma))
+    /// What its files are called before their extension; none are written of the grid.
+    fn stem(&self) -> Option<String> {
+        (self.id != GRID).then(|| format!("{}-{}-{}", self.id, self.formula, self.sigma))
+    }
+
+    /// Writes its trajectory and its page.
+    fn write(&self, plan: &Plan, folder: &Folder, stem: &str, pages: bool) -> Result<(), Failure> {
+        let scenario = self.scenario()?;
+        let (text, stage) = (scenario.to_toml(), scenario.stage(None)?);
+        let trajectory = Trajectory::of(plan, Some(About::of(plan, &text, &stage)));
+        let recording = Recording { trajectory: &trajectory, stage: &stage };
+        folder.write(&format!("{stem}.csv"), |out| Csv.write(recording, out))?;
+        if pages {
+            let page = PlanPage {
+                title: &format!("Experiment {}: {}, sigma = {} s", self.id, self.formula, self.sigma),
+                plan,
+                recording,
+                figures: &plan_figures(recording, Some(plan)),
+                scenario: &text,
+                command: "kinstep plan scenario.toml",
+                suggestions: &[],
+            };
+            folder.write(&format!("{stem}.html"), |out| page.write(out))?;
+        }
+        Ok(())
     }
 
     fn outcome(&self, plan: &Plan) -> Outcome {
@@ -150,12 +174,14 @@ pub(super) fn run(arguments: &ReproduceArguments, output: &mut Output) -> Result
         return write_page(page, arguments.force, output);
     }
     let experiments = experiments();
-    let mut names: Vec<String> = experiments.iter().filter_map(Experiment::trajectory_name).collect();
+    let endings: &[&str] = if arguments.no_report { &["csv"] } else { &["csv", "html"] };
+    let of_stem = |stem: String| endings.iter().map(move |ending| format!("{stem}.{ending}"));
+    let mut names: Vec<String> = experiments.iter().filter_map(Experiment::stem).flat_map(of_stem).collect();
     names.push("reproduce.json".to_owned());
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let folder =
         arguments.out.as_deref().map(|path| Folder::open(path, arguments.force, &names)).transpose()?;
-    let reproduction = run_all(&experiments, folder.as_ref())?;
+    let reproduction = run_all(&experiments, folder.as_ref(), !arguments.no_report)?;
     if let Some(folder) = &folder {
         folder.write("reproduce.json", |out| Ok(serde_json::to_writer_pretty(out, &reproduction)?))?;
     }
@@ -176,7 +202,11 @@ fn write_page(page: &Path, force: bool, output: &mut Output) -> Result<Exit, Fai
     Ok(Exit::Done)
 }
 
-fn run_all(experiments: &[Experiment], folder: Option<&Folder>) -> Result<Reproduction, Failure> {
+fn run_all(
+    experiments: &[Experiment],
+    folder: Option<&Folder>,
+    pages: bool,
+) -> Result<Reproduction, Failure> {
     let mut planners = Vec::new();
     for experiment in experiments {
         planners.push(experiment.scenario()?.planner(FormulaTable::builtin(), None)?);
@@ -186,10 +216,8 @@ fn run_all(experiments: &[Experiment], folder: Option<&Folder>) -> Result<Reprod
     for (experiment, planner) in experiments.iter().zip(planners) {
         let plan = planner.run_with(|done, _| progress.step(done));
         progress.next(plan.steps);
-        if let (Some(folder), Some(name)) = (folder, experiment.trajectory_name()) {
-            let (trajectory, stage) = (Trajectory::of(&plan, None), experiment.scenario()?.stage(None)?);
-            let recording = Recording { trajectory: &trajectory, stage: &stage };
-            folder.write(&name, |out| Csv.write(recording, out))?;
+        if let (Some(folder), Some(stem)) = (folder, experiment.stem()) {
+            experiment.write(&plan, folder, &stem, pages)?;
         }
         outcomes.push(experiment.outcome(&plan));
     }

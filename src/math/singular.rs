@@ -151,6 +151,11 @@ impl RowRotations {
         true
     }
 
+    /// The singular values, in no particular order.
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// The smallest of the `min(rows, columns)` singular values that such a matrix can have.
     pub(crate) fn smallest(&self) -> f64 {
         // In ascending order this is the value after the surplus ones; ties count by their place.

@@ -1,6 +1,7 @@
 //! Results written down: one trait, one file per format, and files that are whole or not there.
 
 mod advice;
+mod decimate;
 pub mod figure;
 mod file;
 mod formula_page;
@@ -15,6 +16,7 @@ mod plan_text;
 mod table;
 
 pub use advice::{Suggestion, suggestions};
+pub use decimate::decimate;
 pub use file::{WriteError, write_whole};
 pub use formula_page::{FormulaPage, pareto_front};
 pub use order::OrderPage;

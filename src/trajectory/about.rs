@@ -57,6 +57,28 @@ impl About {
         let robot = |(arm, hash): &(String, String)| (format!("kinstep.robot_sha256.{arm}"), hash.clone());
         plain.chain(self.robots.iter().map(robot)).collect()
     }
+
+    /// Returns what such entries say, in whatever order they come; nothing where one is missing.
+    pub fn from_entries<'e>(entries: impl IntoIterator<Item = (&'e str, &'e str)>) -> Option<Self> {
+        let known: Vec<(&str, &str)> = entries
+            .into_iter()
+            .filter_map(|(key, value)| Some((key.strip_prefix("kinstep.")?, value)))
+            .collect();
+        let text = |wanted: &str| Some(known.iter().find(|(key, _)| *key == wanted)?.1.to_owned());
+        let number = |wanted: &str| text(wanted)?.parse().ok();
+        let robot = |(key, hash): &(&str, &str)| {
+            Some((key.strip_prefix("robot_sha256.")?.to_owned(), (*hash).to_owned()))
+        };
+        Some(Self {
+            version: text("version")?,
+            formula: text("formula")?,
+            sigma: number("sigma")?,
+            h: number("h")?,
+            start: text("start")?,
+            scenario: text("scenario_sha256")?,
+            robots: known.iter().filter_map(robot).collect(),
+        })
+    }
 }
 
 /// Returns the SHA-256 of a text in hexadecimal digits.

@@ -2,16 +2,25 @@
 //!
 //! [`Trajectory`] holds the samples of all arms on one clock, [`About`] says what made it, [`Stage`] has the robots. A
 //! [`TrajectoryFormat`] writes a [`Recording`] of the three; every format is a file with one implementation.
+//! [`Trajectory::read`] reads what was written, and what other programs write.
 
 mod about;
 mod csv;
+mod csv_layout;
+mod csv_metadata;
+mod csv_records;
+mod error;
 mod format;
+mod read;
 mod stage;
 #[expect(clippy::module_inception, reason = "the file is named after the type that it holds")]
 mod trajectory;
 
 pub use about::About;
 pub use csv::Csv;
+pub use csv_metadata::CsvMetadata;
+pub use error::{Problem, TextPlace, TrajectoryError, TrajectoryErrorKind};
 pub use format::{Recording, TrajectoryFormat};
+pub use read::{Source, TrajectoryReader};
 pub use stage::{Machine, Stage, StagedArm};
 pub use trajectory::{ArmTrajectory, Trajectory};

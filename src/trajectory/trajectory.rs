@@ -21,6 +21,12 @@ pub struct ArmTrajectory {
 }
 
 impl ArmTrajectory {
+    /// An arm without joints and samples.
+    pub(super) fn empty(name: &str) -> Self {
+        let (joints, positions) = (Vec::new(), Vec::new());
+        Self { name: name.to_owned(), joints, positions, velocities: Vec::new(), errors: Vec::new() }
+    }
+
     /// The joint positions [rad or m] of sample `n`.
     ///
     /// # Panics
@@ -73,5 +79,32 @@ impl Trajectory {
     /// Number of samples.
     pub fn samples(&self) -> usize {
         self.times.len()
+    }
+
+    /// The names of the columns of a table of the samples: `t`, then of each arm `ARM.JOINT` joint by joint,
+    /// `ARM.JOINT.velocity`, and `ARM.error`; what is not known has no columns.
+    pub fn columns(&self) -> Vec<String> {
+        let mut names = vec!["t".to_owned()];
+        for arm in &self.arms {
+            for (suffix, known) in [("", true), (".velocity", !arm.velocities.is_empty())] {
+                let joints = arm.joints.iter().filter(|_| known);
+                names.extend(joints.map(|joint| format!("{}.{joint}{suffix}", arm.name)));
+            }
+            if !arm.errors.is_empty() {
+                names.push(format!("{}.error", arm.name));
+            }
+        }
+        names
+    }
+
+    /// The entries of sample `n` in the order of [`Trajectory::columns`], without the time.
+    ///
+    /// # Panics
+    /// If there is no sample `n`.
+    pub fn values(&self, n: usize) -> impl Iterator<Item = f64> + '_ {
+        self.arms.iter().flat_map(move |arm| {
+            let velocities = arm.velocity(n).unwrap_or_default();
+            arm.position(n).iter().chain(velocities).chain(arm.errors.get(n)).copied()
+        })
     }
 }

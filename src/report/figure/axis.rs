@@ -37,6 +37,13 @@ pub(super) struct Tick {
 impl Axis {
     /// Returns an axis; a range without length is widened.
     pub fn new(label: &str, column: &str, scale: Scale, (low, high): (f64, f64)) -> Self {
+        // The length of the range has to be a number too.
+        const FAR: f64 = f64::MAX / 4.0;
+        let (low, high) = if low.is_finite() && high.is_finite() {
+            (low.clamp(-FAR, FAR), high.clamp(-FAR, FAR))
+        } else {
+            (low, high)
+        };
         let usable = low.is_finite() && high.is_finite() && low < high;
         let positive = scale != Scale::Logarithmic || low > 0.0;
         let range = match (usable && positive, scale) {
@@ -60,30 +67,46 @@ impl Axis {
         }
     }
 
-    pub(super) fn ticks(&self) -> Vec<Tick> {
+    /// The ticks of an axis that is `room` long, for labels that take `label` of it [px].
+    pub(super) fn ticks(&self, room: f64, label: f64) -> Vec<Tick> {
+        let most = (room / (2.8 * label + 4.0)).clamp(1.5, 14.0);
         match self.scale {
-            Scale::Linear => linear_ticks(self.range),
+            Scale::Linear => linear_ticks(self.range, most.min(12.0)),
             Scale::Angle => angle_ticks(self.range),
-            Scale::Logarithmic => logarithmic_ticks(self.range),
+            Scale::Logarithmic => logarithmic_ticks(self.range, 1.2 * most),
         }
     }
 }
 
-fn linear_ticks((low, high): (f64, f64)) -> Vec<Tick> {
-    const WANTED: f64 = 6.0;
-    let rough = (high - low) / WANTED;
+fn linear_ticks((low, high): (f64, f64), wanted: f64) -> Vec<Tick> {
+    let rough = (high - low) / wanted;
     let power = rough.log10().floor();
     let step =
         [1.0, 2.0, 5.0, 10.0].map(|m| m * 10_f64.powf(power)).into_iter().find(|s| *s >= rough * 0.999);
     let step = step.unwrap_or(rough);
     let decimals = (-step.log10().floor()).max(0.0) as usize;
+    let size = low.abs().max(high.abs());
+    let is_plain = (1e-3..1e5).contains(&size) && decimals < 6;
     let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
     (first..=last)
         .map(|k| {
             let value = k as f64 * step;
-            Tick { value, label: (signed(&format!("{value:.decimals$}")), None) }
+            let label =
+                if is_plain { (signed(&format!("{value:.decimals$}")), None) } else { powered(value, step) };
+            Tick { value, label }
         })
         .collect()
+}
+
+/// A number as digits and a power of ten, with the digits that tell it from its neighbours `step` away.
+fn powered(value: f64, step: f64) -> (String, Option<String>) {
+    if value == 0.0 {
+        return ("0".to_owned(), None);
+    }
+    let digits = (value.abs().log10().floor() - step.log10().floor()).clamp(0.0, 12.0) as usize;
+    let text = format!("{value:.digits$e}");
+    let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+    (format!("{}\u{b7}10", signed(digits)), Some(signed(power)))
 }
 
 /// A number with a proper minus, and none before a zero.
@@ -113,12 +136,13 @@ fn angle_ticks((low, high): (f64, f64)) -> Vec<Tick> {
         .collect()
 }
 
-fn logarithmic_ticks((low, high): (f64, f64)) -> Vec<Tick> {
+fn logarithmic_ticks((low, high): (f64, f64), most: f64) -> Vec<Tick> {
+    const LEAST: usize = 3;
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
     let decades = high.log10() - low.log10();
     let inside = |value: f64| value >= low * 0.999_999 && value <= high * 1.000_001;
     let multiples: &[u32] = if decades < 2.0 { &[1, 2, 5] } else { &[1] };
-    let stride = (decades / 8.0).ceil().max(1.0) as usize;
+    let stride = (decades / most).ceil().max(1.0) as usize;
     let mut ticks = Vec::new();
     for power in (first..=last).step_by(stride) {
         for &m in multiples {
@@ -128,7 +152,8 @@ fn logarithmic_ticks((low, high): (f64, f64)) -> Vec<Tick> {
             }
         }
     }
-    ticks
+    // On a short stretch of the axis powers of ten are rare, and even steps serve as well.
+    if ticks.len() < LEAST && decades < 2.0 { linear_ticks((low, high), most) } else { ticks }
 }
 
 fn logarithmic_label(m: u32, power: i32, decades: f64) -> (String, Option<String>) {
@@ -146,7 +171,7 @@ mod tests {
 
     fn labels(scale: Scale, range: (f64, f64)) -> Vec<String> {
         let axis = Axis::new("x", "x", scale, range);
-        axis.ticks()
+        axis.ticks(460.0, 26.0)
             .into_iter()
             .map(|t| t.label.0 + &t.label.1.map_or_else(String::new, |e| "^".to_owned() + &e))
             .collect()

@@ -53,6 +53,21 @@ pub enum Mark {
         /// Which colour.
         style: usize,
     },
+    /// A line of any strength, without an entry in the legend.
+    Stroke {
+        /// What the CSV file calls it; without a name it is not in the file.
+        name: String,
+        /// The points.
+        points: Vec<(f64, f64)>,
+        /// Which colour.
+        style: usize,
+        /// How wide [px].
+        width: f64,
+        /// How much of what is below it hides: 1 for everything.
+        opacity: f64,
+        /// Whether it is broken into dashes.
+        is_dashed: bool,
+    },
     /// A thin grey line that helps the eye; not in the CSV file.
     Guide {
         /// The points.
@@ -73,7 +88,7 @@ impl Mark {
             Self::Line { name, style, .. }
             | Self::Points { name, style, .. }
             | Self::Region { name, style, .. } => Some((name, *style)),
-            Self::Guide { .. } | Self::Label { .. } => None,
+            Self::Stroke { .. } | Self::Guide { .. } | Self::Label { .. } => None,
         }
     }
 }
@@ -91,6 +106,10 @@ pub struct Figure {
     pub y: Axis,
     /// Whether both axes have one scale: circles are round.
     pub is_isometric: bool,
+    /// What has to be known to read it, in a sentence or two below it; empty for nothing.
+    pub caption: String,
+    /// How wide and high the whole drawing is to be [px]; without it the drawing takes the room that it needs.
+    pub size: Option<(f64, f64)>,
     /// What a point of a line is taken at: the last column of the CSV file.
     pub parameter: Option<String>,
     /// From back to front.
@@ -114,7 +133,8 @@ impl Figure {
                         self.csv_line(&mut text, name, *point, parameter.get(i));
                     }
                 }
-                Mark::Points { name, points, .. } => {
+                Mark::Stroke { name, .. } if name.is_empty() => {}
+                Mark::Points { name, points, .. } | Mark::Stroke { name, points, .. } => {
                     for point in points {
                         self.csv_line(&mut text, name, *point, None);
                     }
@@ -170,6 +190,8 @@ mod tests {
             x: Axis::new("h", "h", Scale::Linear, (0.0, 1.0)),
             y: Axis::new("r", "r", Scale::Logarithmic, (0.1, 10.0)),
             is_isometric: false,
+            caption: "what < it is".to_owned(),
+            size: None,
             parameter: Some("t".to_owned()),
             marks: vec![
                 Mark::Line {

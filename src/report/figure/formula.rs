@@ -27,6 +27,8 @@ fn plane(figure: &str, id: &str, title: String, half: f64, marks: Vec<Mark>) -> 
         x: axis("Re z", "re"),
         y: axis("Im z", "im"),
         is_isometric: true,
+        caption: String::new(),
+        size: None,
         parameter: None,
         marks,
     }
@@ -155,6 +157,8 @@ pub fn radius_figure(rows: &[(&str, &Analysis)]) -> Figure {
         x: Axis::new("feedback step h", "h", Scale::Linear, (0.0, end)),
         y: Axis::new("spectral radius r(h), decay per step", "r", Scale::Linear, (least - margin, 1.15)),
         is_isometric: false,
+        caption: String::new(),
+        size: None,
         parameter: None,
         marks,
     }
@@ -185,6 +189,8 @@ pub fn region_figure(id: &str, analysis: &Analysis) -> Figure {
         x: Axis::new("Re \u{3c3}\u{3bb}", "re", Scale::Linear, real),
         y: Axis::new("Im \u{3c3}\u{3bb}", "im", Scale::Linear, imaginary),
         is_isometric: true,
+        caption: String::new(),
+        size: None,
         parameter: Some("theta".to_owned()),
         marks,
     }
@@ -231,6 +237,8 @@ pub fn boundary_figure(rows: &[(&str, &Analysis)]) -> Figure {
         x: Axis::new("Re \u{3c3}\u{3bb}", "re", Scale::Linear, real),
         y: Axis::new("Im \u{3c3}\u{3bb}", "im", Scale::Linear, imaginary),
         is_isometric: true,
+        caption: String::new(),
+        size: None,
         parameter: Some("theta".to_owned()),
         marks: guides.map(|points| Mark::Guide { points }).into_iter().chain(marks).collect(),
     }
@@ -293,6 +301,8 @@ fn gain_axes(name: String, title: String, marks: Vec<Mark>) -> Figure {
         x: Axis::new("angular frequency \u{3c9} [rad per step]", "omega", Scale::Angle, (0.0, PI)),
         y: Axis::new("amplification", "gain", Scale::Logarithmic, (0.7 * low, 1.5 * high)),
         is_isometric: false,
+        caption: String::new(),
+        size: None,
         parameter: None,
         marks,
     }

@@ -7,12 +7,17 @@ mod axis;
 #[expect(clippy::module_inception, reason = "the file is named after the one type it holds")]
 mod figure;
 mod formula;
+mod layout;
 mod order;
+mod outline;
 mod pareto;
+mod plan;
 mod robot;
 mod sheet;
 mod style;
 mod svg;
+mod theme;
+mod view;
 
 pub use axis::{Axis, Scale};
 pub use figure::{Figure, Mark, Shape};
@@ -22,5 +27,7 @@ pub use formula::{
 };
 pub use order::order_figure;
 pub use pareto::{FrontPoint, pareto_figure};
+pub use plan::{PlanFigures, plan_figures};
 pub use robot::robot_figures;
 pub use sheet::sheet;
+pub use theme::DARK_THEME;

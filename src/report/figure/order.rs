@@ -21,6 +21,8 @@ pub fn order_figure(name: &str, title: &str, sigmas: &[f64], rows: &[(&str, &Con
         x: Axis::new("sampling gap sigma [s]", "sigma", Scale::Logarithmic, (fine / 1.2, coarse * 1.2)),
         y: Axis::new("error", "error", Scale::Logarithmic, (least / 2.0, most * 2.0)),
         is_isometric: false,
+        caption: String::new(),
+        size: None,
         parameter: None,
         marks,
     }

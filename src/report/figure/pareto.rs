@@ -67,6 +67,8 @@ pub fn pareto_figure(
         x: Axis::new("end of the feedback range h_max", "h_max", Scale::Linear, (0.0, high(|p| p.h_max))),
         y: Axis::new("error per step |C|", "C", Scale::Linear, (0.0, high(|p| p.per_step))),
         is_isometric: false,
+        caption: String::new(),
+        size: None,
         parameter: None,
         marks,
     }

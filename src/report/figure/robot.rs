@@ -2,9 +2,9 @@
 
 use nalgebra::{IsometryMatrix3, Vector3};
 
-use super::axis::{Axis, Scale};
 use super::figure::{Figure, Mark, Shape};
 use super::style::{FONT_SIZE, PLOT, text_width};
+use super::view::{View, spread};
 use crate::robot::{Joint, JointKind, Robot};
 
 /// Half the length of a drawn axis, and how thick a robot may be that lies in a plane, in sizes of the robot.
@@ -17,21 +17,6 @@ const MOST_NUMBERED: usize = 60;
 const TURNS: usize = 1;
 const SLIDES: usize = 2;
 const FREE: usize = 3;
-
-/// A direction to look from: what is to the right and what is up in the picture.
-struct View {
-    name: &'static str,
-    title: &'static str,
-    labels: [&'static str; 2],
-    right: Vector3<f64>,
-    up: Vector3<f64>,
-}
-
-impl View {
-    fn at(&self, point: &Vector3<f64>) -> (f64, f64) {
-        (self.right.dot(point), self.up.dot(point))
-    }
-}
 
 /// Returns drawings of a robot with its joints at `positions` \[rad\] or \[m\] (one per joint, in the robot's order): from
 /// above, from the front, from the side and slanting; of a robot that lies in one plane, that plane alone.
@@ -57,10 +42,7 @@ impl<'r> Scene<'r> {
     }
 
     fn views(&self) -> Vec<View> {
-        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
-        let top = View { name: "top", title: "from above", labels: ["x [m]", "y [m]"], right: x, up: y };
-        let side = View { name: "side", title: "along y", labels: ["x [m]", "z [m]"], right: x, up: z };
-        let front = View { name: "front", title: "against x", labels: ["y [m]", "z [m]"], right: y, up: z };
+        let [slanted, front, side, top] = View::all();
         let is_flat = |axis: usize| {
             spread(self.poses.iter().map(|pose| pose.translation.vector[axis])) < THIN * self.size
                 && self.moving_axes().all(|(joint, direction)| self.stays_flat(joint, direction[axis].abs()))
@@ -69,7 +51,7 @@ impl<'r> Scene<'r> {
             Some(2) => vec![top],
             Some(1) => vec![side],
             Some(_) => vec![front],
-            None => vec![slanted(), front, side, top],
+            None => vec![slanted, front, side, top],
         }
     }
 
@@ -98,16 +80,15 @@ impl<'r> Scene<'r> {
         let x = self.range(&places.iter().map(|place| place.0).collect::<Vec<_>>());
         let y = self.range(&places.iter().map(|place| place.1).collect::<Vec<_>>());
         marks.extend(self.numbers(view, (PLOT / (x.1 - x.0)).min(PLOT * 0.85 / (y.1 - y.0))));
-        let axis = |label: &str, range| {
-            let column = label.split(' ').next().unwrap_or_default();
-            Axis::new(label, column, Scale::Linear, range)
-        };
+        let [x, y] = view.axes(x, y);
         Figure {
             name: view.name.to_owned(),
             title: format!("{}, {}", self.robot.name(), view.title),
-            x: axis(view.labels[0], x),
-            y: axis(view.labels[1], y),
+            x,
+            y,
             is_isometric: true,
+            caption: String::new(),
+            size: None,
             parameter: None,
             marks,
         }
@@ -231,23 +212,12 @@ fn runs(numbers: &[usize]) -> String {
     runs.into_iter().map(run).collect::<Vec<_>>().join(", ")
 }
 
-fn slanted() -> View {
-    let (azimuth, elevation) = ((-55.0_f64).to_radians(), 25.0_f64.to_radians());
-    let right = Vector3::new(-azimuth.sin(), azimuth.cos(), 0.0);
-    let eye = Vector3::new(azimuth.cos() * elevation.cos(), azimuth.sin() * elevation.cos(), elevation.sin());
-    let labels = ["across [m]", "up [m]"];
-    View { name: "slanted", title: "slanting", labels, right, up: eye.cross(&right) }
-}
-
-fn spread(values: impl Iterator<Item = f64>) -> f64 {
-    let (low, high) =
-        values.fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)));
-    high - low
-}
-
 fn points_of(mark: &Mark) -> Vec<(f64, f64)> {
     match mark {
-        Mark::Line { points, .. } | Mark::Points { points, .. } | Mark::Guide { points } => points.clone(),
+        Mark::Line { points, .. }
+        | Mark::Points { points, .. }
+        | Mark::Stroke { points, .. }
+        | Mark::Guide { points } => points.clone(),
         Mark::Region { .. } | Mark::Label { .. } => Vec::new(),
     }
 }

@@ -17,7 +17,7 @@ pub fn sheet(title: &str, figures: &[Figure], columns: usize) -> String {
     let heights: Vec<f64> =
         layouts.chunks(columns).map(|row| row.iter().map(|l| l.total_height).fold(0.0, f64::max)).collect();
     let mut svg = String::new();
-    begin(&mut svg, lefts[columns], heights.iter().sum(), title);
+    begin(&mut svg, (lefts[columns], heights.iter().sum()), "", title);
     svg.push_str("<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>");
     for (i, (figure, layout)) in figures.iter().zip(&layouts).enumerate() {
         let y = heights[..i / columns].iter().fold(0.0, |a, b| a + b);

@@ -4,31 +4,36 @@ use std::fmt::Write;
 
 use super::axis::{Axis, Tick};
 use super::figure::{Figure, Mark, Shape};
+use super::layout::{CAPTION_LINE, EDGE, LEGEND_SAMPLE, Layout, TITLE_LINE};
+use super::outline::outline;
 use super::style::{
-    FONT, FONT_SIZE, GRID, GUIDE, PLOT, PLOT_HEIGHT, TEXT, TITLE_SIZE, colour, dash, text_width,
+    CAPTION_SIZE, FONT, FONT_SIZE, GRID, GUIDE, PAPER, TEXT, TITLE_SIZE, colour, dash, shortened, text_width,
 };
-
-/// The area inside the axes, and the whole around it [px].
-pub(super) struct Layout {
-    left: f64,
-    top: f64,
-    width: f64,
-    height: f64,
-    pub(super) total_width: f64,
-    pub(super) total_height: f64,
-}
-
-const LEGEND_GAP: f64 = 16.0;
-const LEGEND_SAMPLE: f64 = 30.0;
-const LEGEND_LINE: f64 = 20.0;
+use super::theme::stylesheet;
 
 impl Figure {
     /// Returns the figure as an SVG document.
     pub fn to_svg(&self) -> String {
+        self.document("")
+    }
+
+    /// Returns the same drawing for a page: every colour is a custom property of the page's style sheet, `--figure-paper`,
+    /// `--figure-ink`, `--figure-grid`, `--figure-guide` and `--figure-1` to `--figure-6`, and what it is in
+    /// [`to_svg`](Self::to_svg) where the page does not set it. The root has the class `kinstep-figure`. See
+    /// [`DARK_THEME`](super::DARK_THEME).
+    pub fn to_svg_themed(&self) -> String {
+        self.document(&stylesheet())
+    }
+
+    fn document(&self, style: &str) -> String {
         let layout = self.layout();
         let (w, h) = (layout.total_width, layout.total_height);
         let mut svg = String::new();
-        begin(&mut svg, w, h, &self.title);
+        begin(&mut svg, (w, h), if style.is_empty() { "" } else { " class=\"kinstep-figure\"" }, &self.title);
+        if !self.caption.is_empty() {
+            let _ = write!(svg, "<desc>{}</desc>", escaped(&self.caption));
+        }
+        svg.push_str(style);
         self.draw(&mut svg, &layout);
         svg.push_str("</svg>\n");
         svg
@@ -40,51 +45,15 @@ impl Figure {
         [left, left + width, top, top + height, self.x.range.0, self.x.range.1]
     }
 
-    /// Names of the legend, each once, in the order of the marks.
-    fn legend(&self) -> Vec<(&str, &Mark)> {
-        let mut entries: Vec<(&str, &Mark)> = Vec::new();
-        for mark in &self.marks {
-            if let Some((name, _)) = mark.legend().filter(|(name, _)| !name.is_empty())
-                && entries.iter().all(|(known, _)| *known != name)
-            {
-                entries.push((name, mark));
-            }
-        }
-        entries
-    }
-
-    pub(super) fn layout(&self) -> Layout {
-        let (width, height) = if self.is_isometric {
-            let (dx, dy) = (self.x.range.1 - self.x.range.0, self.y.range.1 - self.y.range.0);
-            let scale = (PLOT / dx).min(PLOT * 0.85 / dy);
-            (dx * scale, dy * scale)
-        } else {
-            (PLOT, PLOT_HEIGHT)
-        };
-        let ticks = self.y.ticks();
-        let widest = ticks.iter().map(label_width).fold(0.0, f64::max);
-        let left = 42.0 + widest;
-        let top = 44.0;
-        let legend = self.legend();
-        let names = legend.iter().map(|(name, _)| text_width(name, FONT_SIZE)).fold(0.0, f64::max);
-        let beside = if legend.is_empty() { 22.0 } else { LEGEND_GAP + LEGEND_SAMPLE + names + 10.0 };
-        let title = text_width(&self.title, TITLE_SIZE) + 24.0;
-        Layout {
-            left,
-            top,
-            width,
-            height,
-            total_width: (left + width + beside).max(title).ceil(),
-            total_height: (top + height.max(LEGEND_LINE * legend.len() as f64) + 56.0).ceil(),
-        }
-    }
-
     /// Draws everything at the origin of the current coordinates.
     pub(super) fn draw(&self, svg: &mut String, layout: &Layout) {
         let pen = Pen { figure: self, layout };
         let (w, h) = (layout.total_width, layout.total_height);
-        let _ = write!(svg, r##"<rect width="{w}" height="{h}" fill="#ffffff"/>"##);
-        text(svg, (12.0, 25.0), "start", TITLE_SIZE, " font-weight=\"bold\"", &self.title);
+        let _ = write!(svg, r#"<rect width="{w}" height="{h}" fill="{PAPER}"/>"#);
+        for (line, content) in layout.title.iter().enumerate() {
+            let at = (EDGE, 25.0 + TITLE_LINE * line as f64);
+            text(svg, at, "start", TITLE_SIZE, " font-weight=\"bold\"", content);
+        }
         pen.grid(svg);
         let clip = format!("clip-{}", self.name);
         let Layout { left, top, width, height, .. } = layout;
@@ -100,14 +69,18 @@ impl Figure {
         );
         pen.labels(svg);
         pen.legend(svg);
+        for (line, content) in layout.caption.iter().rev().enumerate() {
+            let at = (EDGE, h - 9.0 - CAPTION_LINE * line as f64);
+            text(svg, at, "start", CAPTION_SIZE, "", content);
+        }
     }
 }
 
 /// Opens a document of this size.
-pub(super) fn begin(svg: &mut String, width: f64, height: f64, title: &str) {
+pub(super) fn begin(svg: &mut String, (width, height): (f64, f64), extra: &str, title: &str) {
     let _ = write!(
         svg,
-        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" font-family="{FONT}" font-size="{FONT_SIZE}" fill="{TEXT}" role="img"><title>{}</title>"#,
+        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" font-family="{FONT}" font-size="{FONT_SIZE}" fill="{TEXT}" role="img"{extra}><title>{}</title>"#,
         escaped(title)
     );
 }
@@ -122,11 +95,6 @@ fn text(svg: &mut String, (x, y): (f64, f64), anchor: &str, size: f64, extra: &s
         r#"<text x="{x:.1}" y="{y:.1}" text-anchor="{anchor}" font-size="{size}"{extra}>{}</text>"#,
         escaped(content)
     );
-}
-
-fn label_width(tick: &Tick) -> f64 {
-    let exponent = tick.label.1.as_ref().map_or(0.0, |e| text_width(e, 10.0));
-    text_width(&tick.label.0, FONT_SIZE) + exponent
 }
 
 /// A tick's label, with its exponent raised.
@@ -153,7 +121,11 @@ impl Pen<'_> {
     fn at(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
         // In widths of the plot: dashes of lines that go on for ever would never be done.
         const FAR: f64 = 3.0;
-        let along = |axis: &Axis, value: f64| axis.place(value).clamp(-FAR, FAR);
+        let along = |axis: &Axis, value: f64| match axis.place(value) {
+            // Nothing that is not positive has a place on a logarithmic axis.
+            f64::NEG_INFINITY if value == 0.0 => f64::NAN,
+            place => place.clamp(-FAR, FAR),
+        };
         let (u, v) = (along(&self.figure.x, x), along(&self.figure.y, y));
         let Layout { left, top, width, height, .. } = self.layout;
         (u.is_finite() && v.is_finite()).then_some((left + u * width, top + (1.0 - v) * height))
@@ -163,12 +135,12 @@ impl Pen<'_> {
         let Layout { left, top, width, height, .. } = self.layout;
         let (right, bottom) = (left + width, top + height);
         let mut lines = String::new();
-        for tick in self.figure.x.ticks() {
+        for tick in self.figure.x.ticks(*width, 2.0 * FONT_SIZE) {
             let x = left + self.figure.x.place(tick.value) * width;
             let _ = write!(lines, "M{x:.1} {top:.1}V{bottom:.1}");
             tick_text(svg, (x, bottom + 18.0), "middle", &tick);
         }
-        for tick in self.figure.y.ticks() {
+        for tick in self.figure.y.ticks(*height, FONT_SIZE) {
             let y = bottom - self.figure.y.place(tick.value) * height;
             let _ = write!(lines, "M{left:.1} {y:.1}H{right:.1}");
             tick_text(svg, (left - 7.0, y + 4.5), "end", &tick);
@@ -178,17 +150,21 @@ impl Pen<'_> {
 
     fn labels(&self, svg: &mut String) {
         let Layout { left, top, width, height, .. } = self.layout;
-        text(svg, (left + width / 2.0, top + height + 42.0), "middle", FONT_SIZE, "", &self.figure.x.label);
+        let size =
+            |label: &str, room: f64| (FONT_SIZE * room / text_width(label, FONT_SIZE)).clamp(8.0, FONT_SIZE);
+        let (across, up) = (&self.figure.x.label, &self.figure.y.label);
+        let x = left + width / 2.0;
+        let room = 2.0 * x.min(self.layout.total_width - x);
+        text(svg, (x, top + height + 42.0), "middle", size(across, room), "", across);
         let (x, y) = (18.0, top + height / 2.0);
         let turn = format!(" transform=\"rotate(-90 {x:.1} {y:.1})\"");
-        text(svg, (x, y), "middle", FONT_SIZE, &turn, &self.figure.y.label);
+        text(svg, (x, y), "middle", size(up, height + 40.0), &turn, up);
     }
 
     fn legend(&self, svg: &mut String) {
-        let Layout { left, top, width, .. } = self.layout;
-        let x = left + width + LEGEND_GAP;
-        for (i, (name, mark)) in self.figure.legend().iter().enumerate() {
-            let y = top + 10.0 + LEGEND_LINE * i as f64;
+        let legend = &self.layout.legend;
+        for (i, (name, mark)) in self.figure.legend().into_iter().take(legend.shown).enumerate() {
+            let (x, y) = legend.place(i);
             match mark {
                 Mark::Line { style, .. } => {
                     let _ = write!(svg, r#"<path d="M{x:.1} {y:.1}h24" {}/>"#, stroke(*style));
@@ -202,15 +178,27 @@ impl Pen<'_> {
                         colour(*style)
                     );
                 }
-                Mark::Guide { .. } | Mark::Label { .. } => {}
+                Mark::Stroke { .. } | Mark::Guide { .. } | Mark::Label { .. } => {}
             }
-            text(svg, (x + LEGEND_SAMPLE, y + 4.5), "start", FONT_SIZE, "", name);
+            text(svg, (x + LEGEND_SAMPLE, y + 4.5), "start", FONT_SIZE, "", &shortened(name, legend.longest));
+        }
+        if legend.left_out > 0 {
+            let (x, y) = legend.place(legend.shown);
+            text(svg, (x, y + 4.5), "start", FONT_SIZE, "", &format!("and {} more", legend.left_out));
         }
     }
 
     fn mark(&self, svg: &mut String, mark: &Mark) {
         match mark {
             Mark::Line { points, style, .. } => self.line(svg, points, &stroke(*style)),
+            Mark::Stroke { points, style, width, opacity, is_dashed, .. } => {
+                let ink = colour(*style);
+                let dashes = if *is_dashed { r#" stroke-dasharray="5 4""# } else { "" };
+                let stroke = format!(
+                    r#"stroke="{ink}" stroke-width="{width}" stroke-opacity="{opacity:.2}"{dashes} fill="none" stroke-linejoin="round" stroke-linecap="round""#
+                );
+                self.line(svg, points, &stroke);
+            }
             Mark::Guide { points } => {
                 self.line(svg, points, &format!(r#"stroke="{GUIDE}" stroke-width="1" fill="none""#));
             }
@@ -223,22 +211,12 @@ impl Pen<'_> {
     }
 
     fn line(&self, svg: &mut String, points: &[(f64, f64)], stroke: &str) {
-        // What is nearer than this to the last point does not show.
-        const CLOSE: f64 = 0.4;
         let mut path = String::new();
-        let mut last: Option<(f64, f64)> = None;
-        for (i, point) in points.iter().enumerate() {
-            let Some((x, y)) = self.at(*point) else {
-                last = None;
-                continue;
-            };
-            let is_end = points.get(i + 1).is_none_or(|next| self.at(*next).is_none());
-            match last {
-                Some((u, v)) if (x - u).hypot(y - v) < CLOSE && !is_end => continue,
-                Some(_) => _ = write!(path, "L{x:.1} {y:.1}"),
-                None => _ = write!(path, "M{x:.1} {y:.1}"),
+        for run in points.split(|point| self.at(*point).is_none()) {
+            let places: Vec<(f64, f64)> = run.iter().filter_map(|point| self.at(*point)).collect();
+            for (k, (x, y)) in outline(&places).into_iter().enumerate() {
+                let _ = write!(path, "{}{x:.1} {y:.1}", if k == 0 { 'M' } else { 'L' });
             }
-            last = Some((x, y));
         }
         let _ = write!(svg, r#"<path d="{path}" {stroke}/>"#);
     }
@@ -282,7 +260,7 @@ fn point(svg: &mut String, (x, y): (f64, f64), shape: Shape, style: usize) {
         Shape::Disk => write!(svg, r#"<circle cx="{x:.1}" cy="{y:.1}" r="4.5" fill="{ink}"/>"#),
         Shape::Circle => write!(
             svg,
-            r##"<circle cx="{x:.1}" cy="{y:.1}" r="4.5" fill="#ffffff" stroke="{ink}" stroke-width="1.8"/>"##
+            r#"<circle cx="{x:.1}" cy="{y:.1}" r="4.5" fill="{PAPER}" stroke="{ink}" stroke-width="1.8"/>"#
         ),
         Shape::Cross => write!(
             svg,
@@ -295,7 +273,7 @@ fn point(svg: &mut String, (x, y): (f64, f64), shape: Shape, style: usize) {
         }
         Shape::Square => write!(
             svg,
-            r##"<rect x="{:.1}" y="{:.1}" width="8" height="8" fill="#ffffff" stroke="{ink}" stroke-width="1.8"/>"##,
+            r#"<rect x="{:.1}" y="{:.1}" width="8" height="8" fill="{PAPER}" stroke="{ink}" stroke-width="1.8"/>"#,
             x - 4.0,
             y - 4.0
         ),

@@ -31,6 +31,14 @@ pub(super) struct Look {
     colour: Option<Colour>,
 }
 
+/// What is known of the looks of a machine.
+pub(super) struct Looks {
+    /// The shapes.
+    pub(super) shown: Vec<Look>,
+    /// Whether these are all.
+    pub(super) is_whole: bool,
+}
+
 /// Triangles of one colour: corners as whole numbers of a box, and which three make a triangle.
 #[derive(Serialize)]
 pub(super) struct Surface {
@@ -57,7 +65,7 @@ pub(super) struct Library {
 
 impl Library {
     /// A library of meshes for these machines.
-    pub(super) fn of(machines: &[Machine]) -> (Self, Vec<Vec<Look>>) {
+    pub(super) fn of(machines: &[Machine]) -> (Self, Vec<Looks>) {
         let looks: Vec<Visuals> = machines
             .iter()
             .map(|machine| machine.urdf.as_deref().map(Visuals::from_urdf).unwrap_or_default())
@@ -73,9 +81,13 @@ impl Library {
         (library, shown)
     }
 
-    fn looks(&mut self, machine: &Machine, looks: Visuals) -> Vec<Look> {
-        self.notes.extend(looks.notes);
-        looks.visuals.into_iter().filter_map(|visual| self.look(machine, visual)).collect()
+    fn looks(&mut self, machine: &Machine, looks: Visuals) -> Looks {
+        let notes = looks.notes.len();
+        looks.notes.into_iter().for_each(|note| self.note(note));
+        let count = looks.visuals.len();
+        let shown: Vec<Look> =
+            looks.visuals.into_iter().filter_map(|visual| self.look(machine, visual)).collect();
+        Looks { is_whole: notes == 0 && shown.len() == count, shown }
     }
 
     fn look(&mut self, machine: &Machine, visual: Visual) -> Option<Look> {

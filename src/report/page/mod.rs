@@ -16,7 +16,7 @@ use std::io::{self, Write};
 use sha2::{Digest, Sha256};
 
 use super::Suggestion;
-use super::figure::Figure;
+use super::figure::{DARK_THEME, Figure};
 use crate::planner::Plan;
 use crate::trajectory::Recording;
 use markup::{base64, escaped, fill};
@@ -58,7 +58,7 @@ impl PlanPage<'_> {
         fill(TEMPLATE, |place| match place {
             "title" => escaped(self.title),
             "policy" => base64(&Sha256::digest(SCRIPT)),
-            "style" => STYLE.to_owned(),
+            "style" => style(),
             "script" => SCRIPT.to_owned(),
             "lead" => summary::lead(self),
             "verdict" => summary::verdict(self.plan),
@@ -86,6 +86,22 @@ impl PlanPage<'_> {
     }
 }
 
+/// The page's style sheet, with the colours of figures on a dark page.
+fn style() -> String {
+    format!(
+        "{STYLE}:root[data-theme=\"dark\"] .kinstep-figure {{ {DARK_THEME} }}\n\
+         @media (prefers-color-scheme: dark) {{ :root:not([data-theme=\"light\"]) .kinstep-figure {{ {DARK_THEME} }} }}\n\
+         @media print {{ :root .kinstep-figure.kinstep-figure {{ {} }} }}\n",
+        light_theme()
+    )
+}
+
+/// What undoes the dark colours: every property without a value of its own falls back to paper.
+fn light_theme() -> String {
+    let names = DARK_THEME.split(';').filter_map(|declaration| declaration.split(':').next());
+    names.map(|name| format!("{name}:initial;")).collect()
+}
+
 /// A figure in the page; one over time says where its axes are, so that the replay can point into it.
 fn figure_markup(figure: &Figure) -> String {
     let window = if figure.x.column == "t" {
@@ -94,5 +110,5 @@ fn figure_markup(figure: &Figure) -> String {
     } else {
         String::new()
     };
-    format!("<figure class=\"figure\"{window}>{}</figure>\n", figure.to_svg())
+    format!("<figure class=\"figure\"{window}>{}</figure>\n", figure.to_svg_themed())
 }

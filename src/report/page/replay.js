@@ -235,7 +235,7 @@
     machine.joints.forEach(joint => {
       const from = place(poses[joint.parent]), to = place(poses[joint.child]), span = add(to, from, -1);
       // A link belongs to an arm where both of its ends do.
-      const owner = own[joint.child] === null || own[joint.parent] === null ? null : own[joint.child] === 'several' || own[joint.parent] === null ? own[joint.child] : own[joint.child];
+      const owner = own[joint.parent] === null ? null : own[joint.child];
       const ink = colourOf(owner), r = owner === null ? Math.min(radius(joint.child), 0.5 * wide) : radius(joint.child);
       if (length(span) > 1e-6 * size) draw(shapes.stick, along(from, span, r, length(span)), ink);
       draw(shapes.sphere, product(shift(to), scaling(0.78 * r, 0.78 * r, 0.78 * r)), ink);
@@ -249,9 +249,9 @@
     });
   };
 
-  const lookOf = (look, pose, draw) => {
+  const lookOf = (look, pose, owner, draw) => {
     const s = look.size, at = product(pose, look.local ||= fromRows(look.pose));
-    const ink = look.colour ? look.colour.slice(0, 3) : mix(colours.robot, [1, 1, 1], 0.35);
+    const ink = look.colour ? look.colour.slice(0, 3) : mix(colourOf(owner), [1, 1, 1], 0.3);
     if (look.shape === 'box') draw(shapes.box, product(at, scaling(s[0], s[1], s[2])), ink);
     else if (look.shape === 'cylinder') draw(shapes.cylinder, product(at, scaling(s[0], s[0], s[1])), ink);
     else if (look.shape === 'sphere') draw(shapes.sphere, product(at, scaling(s[0], s[0], s[0])), ink);
@@ -272,7 +272,11 @@
       const isMesh = look => look.shape === 'mesh';
       // A plain canvas would take seconds for meshes.
       if (!hasLooks(machine) || showsSticks || isPlain && machine.looks.some(isMesh)) sticks(machine, index, poses[index], draw);
-      else for (const look of machine.looks) lookOf(look, poses[index][look.link], draw);
+      else {
+        // Where a shape is missing, the joints show what is there.
+        if (machine.lacks) sticks(machine, index, poses[index], draw);
+        for (const look of machine.looks) lookOf(look, poses[index][look.link], owners[index][look.link], draw);
+      }
     });
     return list;
   };

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::PlanPage;
 use super::keyframes::keyframes;
-use super::looks::{Library, Look, Surface, rows};
+use super::looks::{Library, Look, Looks, Surface, rows};
 use super::markup::{doubles, escaped, json_in_script, singles};
 use super::summary::worst_sample;
 use crate::robot::{Joint, Robot};
@@ -31,6 +31,8 @@ struct Tree<'a> {
     rest: &'a [f64],
     joints: Vec<Branch>,
     looks: Vec<Look>,
+    /// Whether links lack a shape that they should have.
+    lacks: bool,
 }
 
 #[derive(Serialize)]
@@ -168,13 +170,14 @@ fn between(robot: &Robot, mut a: usize, mut b: usize) -> Vec<usize> {
 }
 
 impl<'a> Tree<'a> {
-    fn of(machine: &'a Machine, looks: Vec<Look>) -> Self {
+    fn of(machine: &'a Machine, looks: Looks) -> Self {
         Self {
             links: machine.robot.links().len(),
             world: rows(&machine.world_from_root),
             rest: &machine.rest,
             joints: machine.robot.joints().iter().map(Branch::of).collect(),
-            looks,
+            lacks: !looks.is_whole,
+            looks: looks.shown,
         }
     }
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::PlanPage;
 use super::markup::{escaped, plain};
 use crate::planner::{ArmPlan, Plan, PlanStatus};
+use crate::report::short;
 
 /// What was planned, in one line.
 pub(super) fn lead(page: &PlanPage<'_>) -> String {
@@ -37,7 +38,7 @@ fn facts(plan: &Plan) -> String {
     let facts = [
         ("formula", escaped(&plan.formula)),
         ("sampling gap \u{3c3}", format!("{} s", plan.sigma)),
-        ("feedback step h", format!("{}", plan.h)),
+        ("feedback step h", short(plan.h)),
         ("start", escaped(plan.start)),
         ("steps", format!("{}", plan.steps)),
         ("duration", format!("{} s", plain(plan.time(plan.steps)))),

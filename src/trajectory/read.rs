@@ -1,0 +1,121 @@
+//! Trajectories out of files, whatever their format.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::error::{Problem, TrajectoryError, TrajectoryErrorKind};
+use super::{Csv, Trajectory};
+
+/// The longest file that is read [bytes].
+const LONGEST: u64 = 4 << 30;
+/// The longest stream that is read [bytes]: a device may have no end.
+const LONGEST_STREAM: u64 = 64 << 20;
+
+/// The content of a file, and where it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Source<'a> {
+    /// Its path.
+    pub path: &'a Path,
+    /// Its bytes.
+    pub bytes: &'a [u8],
+}
+
+impl<'a> Source<'a> {
+    /// Whether the file's name ends so; without regard to case.
+    pub fn has_extension(&self, extensions: &[&str]) -> bool {
+        let own = self.path.extension().map(std::ffi::OsStr::to_string_lossy);
+        own.is_some_and(|own| extensions.iter().any(|known| own.eq_ignore_ascii_case(known)))
+    }
+
+    /// Returns the text of the file, without a byte order mark.
+    ///
+    /// # Errors
+    /// The bytes are not UTF-8.
+    pub fn text(&self) -> Result<&'a str, Problem> {
+        let text = std::str::from_utf8(self.bytes).map_err(|e| {
+            let byte = e.valid_up_to() + 1;
+            Problem::new(format!("byte {byte} is not UTF-8; save the file as UTF-8"))
+        })?;
+        Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+    }
+}
+
+/// A format that trajectories are read from. A new format is a file with one implementation, and a line in the list of
+/// [`Trajectory::read`].
+pub trait TrajectoryReader {
+    /// Whether the file is of this format, by its first bytes or else its name.
+    fn knows(&self, source: Source<'_>) -> bool;
+
+    /// Returns the trajectory in the file.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    fn read(&self, source: Source<'_>) -> Result<Trajectory, Problem>;
+}
+
+/// The formats, those with unmistakable first bytes first; the last one takes everything.
+const READERS: &[&dyn TrajectoryReader] = &[&Csv];
+
+impl Trajectory {
+    /// Returns the trajectory in a file of any format that can be read: comma-separated values.
+    ///
+    /// # Errors
+    /// [`TrajectoryError`] with the place where the text is wrong: the file can not be read, its values are not finite,
+    /// its times do not increase, or it has less than two samples.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, TrajectoryError> {
+        let path = path.as_ref();
+        let bytes = bytes_of(path)?;
+        Self::from_bytes(path, &bytes)
+    }
+
+    /// As [`Trajectory::read`], from the bytes that were read from the file at `path`.
+    ///
+    /// # Errors
+    /// As [`Trajectory::read`].
+    pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Self, TrajectoryError> {
+        let source = Source { path, bytes };
+        let reader = READERS.iter().find(|reader| reader.knows(source)).unwrap_or(&READERS[0]);
+        let read = reader.read(source).and_then(checked);
+        read.map_err(|problem| problem.within(path, source.text().unwrap_or_default()))
+    }
+}
+
+/// Holds what was read against what every trajectory keeps to; readers of text have said so before, with the place.
+fn checked(trajectory: Trajectory) -> Result<Trajectory, Problem> {
+    if trajectory.arms.iter().all(|arm| arm.joints.is_empty()) {
+        return Err(Problem::new("no joint moves here: there is no column of joint positions"));
+    }
+    if trajectory.samples() < 2 {
+        let count = trajectory.samples();
+        return Err(Problem::new(format!("a trajectory needs two samples at least, here are {count}")));
+    }
+    let arms = trajectory.arms.iter();
+    let mut values = arms.flat_map(|arm| arm.positions.iter().chain(&arm.velocities).chain(&arm.errors));
+    if let Some(value) = trajectory.times.iter().chain(values.by_ref()).find(|value| !value.is_finite()) {
+        return Err(Problem::new(format!("it holds {value}, which is not a finite number")));
+    }
+    match trajectory.times.windows(2).position(|pair| pair[1] <= pair[0]) {
+        None => Ok(trajectory),
+        Some(n) => Err(Problem::new(not_later(trajectory.times[n], trajectory.times[n + 1]))),
+    }
+}
+
+/// The sentence for times that do not increase.
+pub(super) fn not_later(before: f64, time: f64) -> String {
+    format!("time {time} s does not come after {before} s, the time of the sample before")
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, TrajectoryError> {
+    let unreadable = |e: &std::io::Error| TrajectoryError::of_file(path, e);
+    let file = File::open(path).map_err(|e| unreadable(&e))?;
+    let is_file = file.metadata().is_ok_and(|metadata| metadata.is_file());
+    let most = if is_file { LONGEST } else { LONGEST_STREAM };
+    let mut bytes = Vec::new();
+    file.take(most + 1).read_to_end(&mut bytes).map_err(|e| unreadable(&e))?;
+    if bytes.len() as u64 <= most {
+        return Ok(bytes);
+    }
+    let message = format!("more than {most} bytes, which is longer than what is read");
+    Err(TrajectoryError { path: path.to_owned(), kind: TrajectoryErrorKind::File, message, place: None })
+}
