@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use super::arguments::PictureFormat;
 use super::arguments::PlanArguments;
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
-use super::formula_plot::draw;
 use super::output::Output;
+use super::plot;
 use super::progress::Progress;
 use crate::formula::{Formula, FormulaTable};
 use crate::math::figure;
@@ -53,7 +54,8 @@ pub(super) fn run(
         folder.write("plan.json", |out| PlanJson.write(&plan, out))?;
         folder.write("scenario.toml", |out| out.write_all(again.as_bytes()))?;
         if arguments.figures {
-            draw(&folder.path().join(FIGURES), arguments.force, "", &plan_figures(recording, Some(&plan)))?;
+            let figures = plan_figures(recording, Some(&plan));
+            plot::write(&folder.path().join(FIGURES), arguments.force, &figures, &[PictureFormat::Svg])?;
         }
     }
     if output.wants_json() {
@@ -97,7 +99,7 @@ fn scenario_text(arguments: &PlanArguments) -> Result<ScenarioText, Failure> {
     Ok(text)
 }
 
-fn formula_rows(
+pub(super) fn formula_rows(
     text: &ScenarioText,
     scenario: &Scenario,
     own: Option<&Path>,
