@@ -46,6 +46,18 @@ Examples:
 
 Setting one of law.h and law.gain takes the other away.")]
     Plan(PlanArguments),
+    /// Draw what was saved by plan --out, order --out or sweep --out: figures as SVG, PNG or PDF, their numbers as CSV
+    #[command(after_help = "\
+Examples:
+  kinstep plot results                                       every figure of a plan, into results/figures
+  kinstep plot results --figure motion,errors --format png,pdf
+  kinstep plot results --figure joints --arm left --joint panda_joint4 --from 1 --to 3
+  kinstep plot results --size 480x360 --out small
+  kinstep plot study                                         errors against the gap, of kinstep order --out study
+  kinstep plot grid.csv                                      a map, lines or histograms, of kinstep sweep --out grid.csv
+
+Figures of a plan: motion, paths, errors, joints, velocities, manipulability, singular, condition, limits.")]
+    Plot(PlotArguments),
     /// Run the paper's experiments beside the bounds that it states; exit 1 if one is missed
     #[command(after_help = "Examples:\n  kinstep reproduce\n  kinstep reproduce --out paper --json")]
     Reproduce(ReproduceArguments),
@@ -108,6 +120,90 @@ pub(super) struct PlanArguments {
     /// Replace files that are already there
     #[arg(long)]
     pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct PlotArguments {
+    /// The folder of kinstep plan --out or kinstep order --out, or the table of kinstep sweep --out
+    #[arg(value_name = "SAVED")]
+    pub(super) saved: PathBuf,
+
+    /// Which figures of a plan, separated by commas; all unless given
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(super) figure: Vec<String>,
+
+    /// Only this arm. May be given again
+    #[arg(long, value_name = "NAME")]
+    pub(super) arm: Vec<String>,
+
+    /// Only this joint, where joints are drawn. May be given again
+    #[arg(long, value_name = "NAME")]
+    pub(super) joint: Vec<String>,
+
+    /// Begin at this time in s
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = time)]
+    pub(super) from: Option<f64>,
+
+    /// End at this time in s
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = time)]
+    pub(super) to: Option<f64>,
+
+    /// How wide and high each drawing is in pixels; as large as it needs to be unless given
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(super) size: Option<(f64, f64)>,
+
+    /// Formats, separated by commas
+    #[arg(long, value_delimiter = ',', default_value = "svg")]
+    pub(super) format: Vec<PictureFormat>,
+
+    /// Folder for the figures; the folder figures beside what was saved unless given
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+
+    /// Replace files that are already there
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+/// Formats of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum PictureFormat {
+    /// Scalable drawings
+    Svg,
+    /// Pixels, two for each of the drawing's own
+    Png,
+    /// A page
+    Pdf,
+}
+
+impl PictureFormat {
+    /// The end of its files' names.
+    pub(super) fn ending(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Pdf => "pdf",
+        }
+    }
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    let time = crate::math::evaluate(text).ok().filter(|time| time.is_finite());
+    time.ok_or_else(|| format!("\"{text}\" is no time in s"))
+}
+
+/// Reads `800x600`.
+fn size(text: &str) -> Result<(f64, f64), String> {
+    const SIDES: std::ops::RangeInclusive<u32> = 160..=8000;
+    let sides =
+        text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.trim().parse().ok()?, h.trim().parse().ok()?)));
+    match sides {
+        Some((width, height)) if SIDES.contains(&width) && SIDES.contains(&height) => {
+            Ok((width.into(), height.into()))
+        }
+        Some(_) => Err(format!("both sides have to be from {} to {} pixels", SIDES.start(), SIDES.end())),
+        None => Err(format!("\"{text}\" is no size; write width and height in pixels, as in 800x600")),
+    }
 }
 
 #[derive(Debug, Args)]

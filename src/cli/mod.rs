@@ -15,6 +15,7 @@ mod formula_search;
 mod order;
 mod output;
 mod plan;
+mod plot;
 mod progress;
 mod reproduce;
 mod robot;
@@ -62,6 +63,7 @@ fn dispatch(arguments: &Arguments, output: &mut Output) -> Result<Exit, Failure>
     let own = arguments.formulas.as_deref();
     match &arguments.command {
         Command::Plan(command) => plan::run(command, own, output),
+        Command::Plot(command) => plot::run(command, own, output),
         Command::Order(command) => order::run(command, own, output),
         Command::Reproduce(command) => reproduce::run(command, output),
         Command::Formula(command) => formula::run(command, own, output),

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use super::arguments::PictureFormat;
 use super::arguments::PlanArguments;
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
-use super::formula_plot::draw;
 use super::output::Output;
+use super::plot;
 use super::progress::Progress;
 use crate::formula::FormulaTable;
 use crate::planner::{Plan, PlanStatus, Planner};
@@ -58,7 +59,7 @@ pub(super) fn run(
         folder.write("scenario.toml", |out| out.write_all(again.as_bytes()))?;
         let figures = plan_figures(recording, Some(&plan));
         if arguments.figures {
-            draw(&folder.path().join(FIGURES), arguments.force, "", &figures)?;
+            plot::write(&folder.path().join(FIGURES), arguments.force, &figures, &[PictureFormat::Svg])?;
         }
         if !arguments.no_report {
             let page = PlanPage {
@@ -126,7 +127,7 @@ fn scenario_text(arguments: &PlanArguments) -> Result<ScenarioText, Failure> {
     Ok(text)
 }
 
-fn formula_rows(
+pub(super) fn formula_rows(
     text: &ScenarioText,
     scenario: &Scenario,
     own: Option<&Path>,

@@ -164,6 +164,14 @@ impl Planner {
         }
     }
 
+    /// Where the tip of arm `i` (in the order in which arms were added) shall be at the time `t` \[s\].
+    ///
+    /// # Panics
+    /// If there is no arm `i`.
+    pub fn reference(&self, i: usize, t: f64) -> Reference {
+        self.field.arms[i].arm.motion.at(t)
+    }
+
     /// Goes to the next sample; does nothing once [finished](Self::is_finished).
     ///
     /// A run that stops does so at a sample that lies beyond its bounds: look at [`is_finished`](Self::is_finished) before

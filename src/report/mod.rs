@@ -13,6 +13,8 @@ mod plan;
 #[cfg(feature = "cli")]
 mod plan_json;
 mod plan_text;
+#[cfg(feature = "raster")]
+mod raster;
 mod table;
 
 pub use advice::{Suggestion, suggestions};
@@ -27,4 +29,6 @@ pub use plan::PlanFormat;
 #[cfg(feature = "cli")]
 pub use plan_json::PlanJson;
 pub use plan_text::PlanText;
+#[cfg(feature = "raster")]
+pub use raster::{RasterError, to_pdf, to_png};
 pub use table::{Table, short, sparkline};

@@ -26,14 +26,15 @@ pub struct About {
 }
 
 impl About {
-    /// Returns what there is to say of a plan of the scenario with this text, on that stage.
-    pub fn of(plan: &Plan, scenario: &str, stage: &Stage) -> Self {
+    /// Returns what there is to say of a plan by a formula, with a sampling gap \[s\] and a feedback step, of the scenario
+    /// with this text, on that stage.
+    pub fn new(formula: &str, [sigma, h]: [f64; 2], start: &str, scenario: &str, stage: &Stage) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            formula: plan.formula.clone(),
-            sigma: plan.sigma,
-            h: plan.h,
-            start: plan.start.to_owned(),
+            formula: formula.to_owned(),
+            sigma,
+            h,
+            start: start.to_owned(),
             scenario: fingerprint(scenario),
             robots: stage
                 .arms
@@ -41,6 +42,11 @@ impl About {
                 .map(|arm| (arm.name.clone(), stage.machines[arm.machine].fingerprint()))
                 .collect(),
         }
+    }
+
+    /// Returns what there is to say of a plan of the scenario with this text, on that stage.
+    pub fn of(plan: &Plan, scenario: &str, stage: &Stage) -> Self {
+        Self::new(&plan.formula, [plan.sigma, plan.h], plan.start, scenario, stage)
     }
 
     /// The entries as text, for formats that carry keys and values; numbers read back as they were.

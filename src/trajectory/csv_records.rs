@@ -6,25 +6,25 @@ use super::error::Problem;
 
 /// A field, and the byte at which it begins.
 #[derive(Clone, Debug)]
-pub(super) struct Field<'t> {
-    pub(super) text: Cow<'t, str>,
+pub(crate) struct Field<'t> {
+    pub(crate) text: Cow<'t, str>,
     pub(super) at: usize,
 }
 
 /// The records of a text, one after another.
 #[derive(Clone, Debug)]
-pub(super) struct Records<'t> {
+pub(crate) struct Records<'t> {
     text: &'t str,
     at: usize,
 }
 
 impl<'t> Records<'t> {
-    pub(super) fn new(text: &'t str) -> Self {
+    pub(crate) fn new(text: &'t str) -> Self {
         Self { text, at: 0 }
     }
 
     /// Reads the next record that has something in it into `fields`; false at the end. Returns where it ends.
-    pub(super) fn read(&mut self, fields: &mut Vec<Field<'t>>) -> Result<bool, Problem> {
+    pub(crate) fn read(&mut self, fields: &mut Vec<Field<'t>>) -> Result<bool, Problem> {
         fields.clear();
         loop {
             let rest = &self.text[self.at..];

@@ -19,6 +19,7 @@ mod trajectory;
 pub use about::About;
 pub use csv::Csv;
 pub use csv_metadata::CsvMetadata;
+pub(crate) use csv_records::Records;
 pub use error::{Problem, TextPlace, TrajectoryError, TrajectoryErrorKind};
 pub use format::{Recording, TrajectoryFormat};
 pub use read::{Source, TrajectoryReader};

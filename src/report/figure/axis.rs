@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use super::style::{FONT_SIZE, shortened, text_width};
+
 /// How an axis counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
@@ -11,6 +13,8 @@ pub enum Scale {
     Logarithmic,
     /// Evenly, with ticks at fractions of pi.
     Angle,
+    /// By names: 0, 1, 2 and so on stand for them.
+    Named,
 }
 
 /// One side of a figure.
@@ -24,6 +28,8 @@ pub struct Axis {
     pub scale: Scale,
     /// From where to where.
     pub range: (f64, f64),
+    /// What 0, 1, 2 and so on stand for on an axis of names.
+    pub names: Vec<String>,
 }
 
 /// A mark on an axis.
@@ -55,7 +61,13 @@ impl Axis {
             (false, _) if low.is_finite() => (low - 0.5, low + 0.5),
             (false, _) => (0.0, 1.0),
         };
-        Self { label: label.to_owned(), column: column.to_owned(), scale, range }
+        Self { label: label.to_owned(), column: column.to_owned(), scale, range, names: Vec::new() }
+    }
+
+    /// Returns an axis of names, each with as much room as the others.
+    pub fn named(label: &str, column: &str, names: Vec<String>) -> Self {
+        let range = (-0.5, names.len().max(1) as f64 - 0.5);
+        Self { label: label.to_owned(), column: column.to_owned(), scale: Scale::Named, range, names }
     }
 
     /// The place of a value along the axis: 0 at its beginning, 1 at its end.
@@ -73,8 +85,25 @@ impl Axis {
         match self.scale {
             Scale::Linear => linear_ticks(self.range, most.min(12.0)),
             Scale::Angle => angle_ticks(self.range),
+            Scale::Named => self.named_ticks(room, label),
             Scale::Logarithmic => logarithmic_ticks(self.range, 1.2 * most),
         }
+    }
+}
+
+impl Axis {
+    /// A tick for each name, or for one of several where they would stand over each other. Labels may be as wide as a row
+    /// is high in an upright axis, whose `label` is no wider than the letters are high.
+    fn named_ticks(&self, room: f64, label: f64) -> Vec<Tick> {
+        const WORD: usize = 18;
+        let upright = label <= FONT_SIZE;
+        let each = room / self.names.len().max(1) as f64;
+        let longest = if upright { WORD } else { ((each / text_width("x", FONT_SIZE)) as usize).max(6) };
+        let wide = |name: &String| text_width(&shortened(name, longest), FONT_SIZE) + 6.0;
+        let needed = if upright { FONT_SIZE + 2.0 } else { self.names.iter().map(wide).fold(0.0, f64::max) };
+        let stride = (needed / each).ceil().max(1.0) as usize;
+        let names = self.names.iter().enumerate().step_by(stride);
+        names.map(|(k, name)| Tick { value: k as f64, label: (shortened(name, longest), None) }).collect()
     }
 }
 

@@ -68,6 +68,13 @@ pub enum Mark {
         /// Whether it is broken into dashes.
         is_dashed: bool,
     },
+    /// Cells of a map, one wide and high, in shades.
+    Cells {
+        /// What the CSV file calls them.
+        name: String,
+        /// The cells.
+        cells: Vec<Cell>,
+    },
     /// A thin grey line that helps the eye; not in the CSV file.
     Guide {
         /// The points.
@@ -82,13 +89,26 @@ pub enum Mark {
     },
 }
 
+/// A cell of a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    /// Its middle.
+    pub at: (f64, f64),
+    /// What it stands for: the last column of the CSV file.
+    pub value: f64,
+    /// From light, 0, to dark, 1; without one it is grey.
+    pub shade: Option<f64>,
+    /// What stands in it.
+    pub text: String,
+}
+
 impl Mark {
     pub(super) fn legend(&self) -> Option<(&str, usize)> {
         match self {
             Self::Line { name, style, .. }
             | Self::Points { name, style, .. }
             | Self::Region { name, style, .. } => Some((name, *style)),
-            Self::Stroke { .. } | Self::Guide { .. } | Self::Label { .. } => None,
+            Self::Stroke { .. } | Self::Cells { .. } | Self::Guide { .. } | Self::Label { .. } => None,
         }
     }
 }
@@ -146,6 +166,11 @@ impl Figure {
                         self.csv_line(&mut text, name, (*right, middle), None);
                     }
                 }
+                Mark::Cells { name, cells } => {
+                    for cell in cells {
+                        self.csv_line(&mut text, name, cell.at, Some(&cell.value));
+                    }
+                }
                 Mark::Guide { .. } | Mark::Label { .. } => {}
             }
         }
@@ -153,22 +178,37 @@ impl Figure {
     }
 
     fn csv_line(&self, text: &mut String, name: &str, (x, y): (f64, f64), parameter: Option<&f64>) {
-        let quoted = if name.contains([',', '"']) {
-            format!("\"{}\"", name.replace('"', "\"\""))
-        } else {
-            name.to_owned()
-        };
-        let _ = write!(text, "{quoted},{},{}", on_axis(x, &self.x), on_axis(y, &self.y));
+        let _ = write!(text, "{},{},{}", quoted(name), on_axis(x, &self.x), on_axis(y, &self.y));
         if self.parameter.is_some() {
-            let _ = write!(text, ",{}", parameter.map_or_else(String::new, |value| number(*value)));
+            let _ = write!(text, ",{}", parameter.map_or_else(String::new, |value| small(*value)));
         }
         text.push('\n');
     }
 }
 
-/// A number as its axis shows it: on a logarithmic one small numbers are no noise.
+/// A text as a field of a CSV file.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+/// A number as its axis shows it: on a logarithmic one small numbers are no noise, and on one of names they are names.
 fn on_axis(value: f64, axis: &Axis) -> String {
-    let is_small = axis.scale == Scale::Logarithmic && value != 0.0 && value.abs() < 1e-6;
+    match axis.scale {
+        Scale::Logarithmic => small(value),
+        Scale::Named => {
+            axis.names.get(value.round() as usize).map_or_else(|| number(value), |name| quoted(name))
+        }
+        Scale::Linear | Scale::Angle => number(value),
+    }
+}
+
+/// A number that keeps its digits however small it is.
+fn small(value: f64) -> String {
+    let is_small = value != 0.0 && value.abs() < 1e-6;
     if is_small { format!("{value:.6e}") } else { number(value) }
 }
 

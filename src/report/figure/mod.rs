@@ -16,11 +16,12 @@ mod robot;
 mod sheet;
 mod style;
 mod svg;
+mod sweep;
 mod theme;
 mod view;
 
 pub use axis::{Axis, Scale};
-pub use figure::{Figure, Mark, Shape};
+pub use figure::{Cell, Figure, Mark, Shape};
 pub use formula::{
     boundary_figure, comparison, frequency_figure, locus_figure, portrait, radius_figure, region_figure,
     roots_figure,
@@ -30,4 +31,5 @@ pub use pareto::{FrontPoint, pareto_figure};
 pub use plan::{PlanFigures, plan_figures};
 pub use robot::robot_figures;
 pub use sheet::sheet;
+pub use sweep::sweep_figures;
 pub use theme::DARK_THEME;

@@ -212,13 +212,13 @@ fn runs(numbers: &[usize]) -> String {
     runs.into_iter().map(run).collect::<Vec<_>>().join(", ")
 }
 
-fn points_of(mark: &Mark) -> Vec<(f64, f64)> {
+pub(super) fn points_of(mark: &Mark) -> Vec<(f64, f64)> {
     match mark {
         Mark::Line { points, .. }
         | Mark::Points { points, .. }
         | Mark::Stroke { points, .. }
         | Mark::Guide { points } => points.clone(),
-        Mark::Region { .. } | Mark::Label { .. } => Vec::new(),
+        Mark::Region { .. } | Mark::Cells { .. } | Mark::Label { .. } => Vec::new(),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::axis::{Axis, Tick};
-use super::figure::{Figure, Mark, Shape};
+use super::figure::{Cell, Figure, Mark, Shape};
 use super::layout::{CAPTION_LINE, EDGE, LEGEND_SAMPLE, Layout, TITLE_LINE};
 use super::outline::outline;
 use super::style::{
@@ -178,7 +178,7 @@ impl Pen<'_> {
                         colour(*style)
                     );
                 }
-                Mark::Stroke { .. } | Mark::Guide { .. } | Mark::Label { .. } => {}
+                Mark::Stroke { .. } | Mark::Cells { .. } | Mark::Guide { .. } | Mark::Label { .. } => {}
             }
             text(svg, (x + LEGEND_SAMPLE, y + 4.5), "start", FONT_SIZE, "", &shortened(name, legend.longest));
         }
@@ -206,6 +206,7 @@ impl Pen<'_> {
                 points.iter().filter_map(|p| self.at(*p)).for_each(|p| point(svg, p, *shape, *style));
             }
             Mark::Region { strips, style, .. } => self.region(svg, strips, *style),
+            Mark::Cells { cells, .. } => cells.iter().for_each(|cell| self.cell(svg, cell)),
             Mark::Label { text: content, at } => self.label(svg, content, *at),
         }
     }
@@ -235,6 +236,26 @@ impl Pen<'_> {
         );
     }
 
+    /// A cell, with its text where there is room for it.
+    fn cell(&self, svg: &mut String, cell: &Cell) {
+        let (x, y) = cell.at;
+        let corners = [(x - 0.5, y + 0.5), (x + 0.5, y - 0.5)].map(|corner| self.at(corner));
+        let [Some((left, top)), Some((right, bottom))] = corners else { return };
+        let (width, height) = (right - left, bottom - top);
+        let fill = shade(cell.shade);
+        let _ = write!(
+            svg,
+            r#"<rect x="{left:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}" fill="{fill}" stroke="{PAPER}"/>"#
+        );
+        let size = (FONT_SIZE * (width - 6.0) / text_width(&cell.text, FONT_SIZE)).min(FONT_SIZE);
+        if size >= LEAST_SIZE && height > size {
+            let at = (f64::midpoint(left, right), f64::midpoint(top, bottom) + 0.35 * size);
+            // Neither is a colour of the theme: cells are the same on light and on dark paper.
+            let ink = if cell.shade.is_some_and(|shade| shade > 0.5) { "#fdfdfd" } else { "#1c1c1c" };
+            text(svg, at, "middle", size, &format!(r#" fill="{ink}""#), &cell.text);
+        }
+    }
+
     /// A text below its point, to the right or, where there is no room, to the left, with a white halo.
     fn label(&self, svg: &mut String, content: &str, at: (f64, f64)) {
         let Some((x, y)) = self.at(at) else { return };
@@ -244,6 +265,16 @@ impl Pen<'_> {
         let halo = r##" stroke="#ffffff" stroke-width="4" paint-order="stroke""##;
         text(svg, (x, (y + 20.0).min(top + height - 6.0)), anchor, FONT_SIZE, halo, content);
     }
+}
+
+/// The least size of letters in cells [px].
+const LEAST_SIZE: f64 = 7.0;
+
+/// From nearly white to dark blue, evenly; grey where there is no shade.
+fn shade(share: Option<f64>) -> String {
+    let Some(share) = share else { return "#c9c9c9".to_owned() };
+    let part = |light: f64, dark: f64| (light + (dark - light) * share).round() as u8;
+    format!("#{:02x}{:02x}{:02x}", part(243.0, 11.0), part(247.0, 72.0), part(250.0, 112.0))
 }
 
 fn stroke(style: usize) -> String {

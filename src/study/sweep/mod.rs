@@ -6,8 +6,10 @@
 mod axis;
 mod case;
 mod journal;
+mod read;
 mod run;
 
 pub use axis::{Axis, AxisError};
 pub use case::{Case, Figures, Record, Sweep};
+pub use read::{SweepRow, SweepTable};
 pub use run::{Progress, SweepError, Swept, Table, run};
