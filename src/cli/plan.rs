@@ -4,7 +4,6 @@ use std::path::Path;
 
 use super::arguments::PlanArguments;
 use super::failure::{Exit, Failure};
-use super::folder::Folder;
 use super::output::Output;
 use super::progress::Progress;
 use crate::formula::{Formula, FormulaTable};
@@ -31,8 +30,7 @@ pub(super) fn run(
     let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
     let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
     keep_starts(&mut scenario, &planner);
-    let folder =
-        arguments.out.as_deref().map(|path| Folder::open(path, arguments.force, &NAMES)).transpose()?;
+    let folder = arguments.written.folder(&NAMES)?;
     let mut plan = run_planner(planner);
     plan.warnings.extend(rows.warnings());
     let names_formula = scenario.formula.is_some();
@@ -120,7 +118,7 @@ fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, scenari
     let name = arguments.scenario.as_ref().map_or_else(String::new, |file| format!(" {}", file.display()));
     let mut next = Vec::new();
     let mut written = String::new();
-    match &arguments.out {
+    match &arguments.written.out {
         Some(folder) => written = format!("\nWritten to {}: {}.\n", folder.display(), NAMES.join(", ")),
         None => next.push(("--out results".to_owned(), "the trajectory as a file".to_owned())),
     }

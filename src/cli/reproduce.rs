@@ -146,14 +146,13 @@ struct Decade {
 
 pub(super) fn run(arguments: &ReproduceArguments, output: &mut Output) -> Result<Exit, Failure> {
     if let Some(page) = &arguments.page {
-        return write_page(page, arguments.force, output);
+        return write_page(page, arguments.written.force, output);
     }
     let experiments = experiments();
     let mut names: Vec<String> = experiments.iter().filter_map(Experiment::trajectory_name).collect();
     names.push("reproduce.json".to_owned());
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let folder =
-        arguments.out.as_deref().map(|path| Folder::open(path, arguments.force, &names)).transpose()?;
+    let folder = arguments.written.folder(&names)?;
     let reproduction = run_all(&experiments, folder.as_ref())?;
     if let Some(folder) = &folder {
         folder.write("reproduce.json", |out| Ok(serde_json::to_writer_pretty(out, &reproduction)?))?;
