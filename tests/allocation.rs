@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
-use kinstep::planner::{Arm, Planner, Start};
+use kinstep::planner::{Arm, Noise, Planner, PlannerBuilder, Start};
 use kinstep::robot::embedded;
 use kinstep::scheme;
 use kinstep::task::{Circle, Motion, Planar, Plane, Sin2, TaskKind};
@@ -10,6 +10,10 @@ use std::f64::consts::TAU;
 
 /// Two Pandas, a metre apart, each on a circle with its orientation held.
 fn planner(start: Start) -> Planner {
+    builder(start).build().unwrap()
+}
+
+fn builder(start: Start) -> PlannerBuilder {
     let arm = |name: &str, y: f64| {
         let chain = embedded::get("panda").unwrap().chain("panda_link0", "panda_link8").unwrap();
         let chain = chain.mounted(&IsometryMatrix3::new(Vector3::new(0.0, y, 0.0), Vector3::zeros()));
@@ -19,7 +23,7 @@ fn planner(start: Start) -> Planner {
         Arm::new(name, chain, q0, TaskKind::Pose, Motion::from_pose(path, Sin2, 2.0, &pose))
     };
     let arms = [arm("left", 0.5), arm("right", -0.5)];
-    scheme::dtsmp(arms, 0.001, 0.4).start(start).duration(2.0).build().unwrap()
+    scheme::dtsmp(arms, 0.001, 0.4).start(start).duration(2.0)
 }
 
 #[test]
@@ -53,6 +57,19 @@ fn shared() -> Planner {
 #[test]
 fn a_thousand_steps_of_arms_with_a_common_torso_allocate_nothing() {
     let mut planner = shared();
+    let spent = allocation_counter::measure(|| {
+        for _ in 0..1000 {
+            planner.step();
+        }
+    });
+    assert_eq!((planner.index(), planner.stop()), (1000, None));
+    assert_eq!(spent.count_total, 0, "{spent:?}");
+}
+
+#[test]
+fn a_thousand_steps_with_noise_allocate_nothing() {
+    let noise = Noise { seed: 1, position: 1e-5, linear_velocity: 1e-5, joints: 1e-6, ..Noise::default() };
+    let mut planner = builder(Start::Rk4).noise(noise).build().unwrap();
     let spent = allocation_counter::measure(|| {
         for _ in 0..1000 {
             planner.step();

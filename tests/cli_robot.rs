@@ -105,6 +105,30 @@ fn joint_positions_for_a_pose_lead_to_that_pose() {
 }
 
 #[test]
+fn a_zero_is_printed_as_a_zero_and_kept_in_full_for_programs() {
+    let typed = [
+        "robot",
+        "ik",
+        "iiwa14",
+        "--base",
+        "iiwa_link_0",
+        "--tip",
+        "iiwa_link_ee",
+        "--position",
+        "0.5,0,0.5",
+    ];
+    let text = kinstep(&typed).expect(0).out;
+    let (_, q) = text.split_once("--q=").unwrap();
+    let is_plain =
+        |number: &str| number.trim() == "0" || number.trim().parse::<f64>().unwrap().abs() >= 1e-16;
+    assert!(q.split(',').all(is_plain) && !text.contains("-0.000000000 "), "{text}");
+    // The last joint does not move the tip, and is where the search happened to leave it.
+    let document = kinstep(&[&typed[..], &["--json"]].concat()).expect(0).json();
+    let last = document["q"][6].as_f64().unwrap();
+    assert!(last.abs() < 1e-16 && q.trim().ends_with(",0"), "{last:e} {text}");
+}
+
+#[test]
 fn a_place_out_of_reach_is_answered_with_the_nearest_one() {
     let typed = ["robot", "ik", "planar4", "--base", "base", "--tip", "tip", "--position", "4.8,6.4"];
     let answer = kinstep(&[&typed[..], &["--json"]].concat()).expect(5).json();

@@ -6,10 +6,13 @@ mod trees;
 
 use kinstep::nalgebra::{IsometryMatrix3, Rotation3, Vector3, Vector6};
 use kinstep::robot::{
-    Calibration, CalibrationError, Chain, JointCorrection, JointKind, LockError, Robot, ToolError, embedded,
+    Calibration, CalibrationError, Chain, Joint, JointCorrection, JointKind, LockError, Robot, ToolError,
+    embedded,
 };
+use kinstep::study::strategies::{ChainCase, TreeCase, chains, trees};
 use proptest::prelude::*;
-use trees::{TestTree, case, distance};
+use proptest::sample::Index;
+use trees::{distance, poses};
 
 fn pose(chain: &Chain, q: &[f64]) -> IsometryMatrix3<f64> {
     chain.forward(q, &mut chain.scratch()).pose()
@@ -22,24 +25,26 @@ fn columns(chain: &Chain, q: &[f64]) -> Vec<Vector6<f64>> {
 }
 
 /// The positions of a chain's joints, of which one is read differently.
-fn q_with(tree: &TestTree, chain: &Chain, joint: &str, position: f64) -> Vec<f64> {
+fn q_with(tree: &TreeCase, chain: &Chain, joint: &str, position: f64) -> Vec<f64> {
     let q = tree.q_of(chain);
     chain.joints().iter().zip(q).map(|(own, q)| if own.name == joint { position } else { q }).collect()
 }
 
 /// A joint of the tree that moves on its own, if there is one.
-fn mover(robot: &Robot, pick: usize) -> Option<String> {
+fn mover(robot: &Robot, pick: Index) -> Option<String> {
     let movers: Vec<_> = robot.movable_joints().map(|joint| joint.name.clone()).collect();
-    (!movers.is_empty()).then(|| movers[pick % movers.len()].clone())
+    (!movers.is_empty()).then(|| pick.get(&movers).clone())
 }
 
 proptest! {
     #[test]
-    fn a_locked_joint_is_the_same_robot_with_that_joint_left_alone((tree, [base, tip, pick]) in case()) {
-        let robot = tree.robot();
+    fn a_locked_joint_is_the_same_robot_with_that_joint_left_alone(
+        ChainCase { tree, base, tip } in chains(), pick in any::<Index>(),
+    ) {
+        let robot = tree.robot().unwrap();
         let Some(name) = mover(&robot, pick) else { return Ok(()) };
         let (base, tip) = (format!("l{base}"), format!("l{tip}"));
-        let held = tree.q[name[1..].parse::<usize>().unwrap()];
+        let held = tree.position_of(&name).unwrap();
         // A follower may have to stay within its own limits.
         let locked = robot.with_locked(&name, &[held]);
         if let Err(LockError::Follower { .. }) = locked { return Ok(()) }
@@ -58,16 +63,16 @@ proptest! {
 
     #[test]
     fn a_calibrated_arm_reads_otherwise_and_stands_alike(
-        (tree, [base, tip, pick]) in case(), zero in -0.5..0.5, reversed in prop::bool::ANY,
+        ChainCase { tree, base, tip } in chains(), pick in any::<Index>(), zero in -0.5..0.5, reversed in prop::bool::ANY,
     ) {
-        let robot = tree.robot();
+        let robot = tree.robot().unwrap();
         let Some(name) = mover(&robot, pick) else { return Ok(()) };
         let mut calibration = Calibration::default();
         calibration.insert(&name, JointCorrection { zero, reversed, ..JointCorrection::default() });
         let calibrated = robot.with_calibration(&calibration).unwrap();
         let (base, tip) = (format!("l{base}"), format!("l{tip}"));
         let (Ok(model), Ok(arm)) = (robot.chain(&base, &tip), calibrated.chain(&base, &tip)) else { return Ok(()) };
-        let position = tree.q[name[1..].parse::<usize>().unwrap()];
+        let position = tree.position_of(&name).unwrap();
         let reading = if reversed { zero - position } else { position - zero };
         let (q, readings) = (tree.q_of(&model), q_with(&tree, &arm, &name, reading));
         // Followers on the path are coupled to the body, not to its reading: they stand alike too.
@@ -88,10 +93,10 @@ proptest! {
 
     #[test]
     fn a_corrected_origin_is_moved_and_turned_in_its_parents_axes(
-        (tree, [pick, ..]) in case(), xyz in prop::array::uniform3(-0.1..0.1), rpy in prop::array::uniform3(-0.1..0.1),
+        tree in trees(), pick in any::<Index>(), xyz in prop::array::uniform3(-0.1..0.1), rpy in prop::array::uniform3(-0.1..0.1),
     ) {
-        let robot = tree.robot();
-        let joint = &robot.joints()[pick % robot.joints().len()];
+        let robot = tree.robot().unwrap();
+        let joint = pick.get(robot.joints());
         let mut calibration = Calibration::default();
         calibration.insert(&joint.name, JointCorrection { xyz, rpy, ..JointCorrection::default() });
         let corrected = robot.with_calibration(&calibration).unwrap();
@@ -107,10 +112,10 @@ proptest! {
 
     #[test]
     fn a_tool_is_one_more_constant_at_the_tip(
-        (tree, [base, tip, _]) in case(),
+        ChainCase { tree, base, tip } in chains(),
         shift in prop::array::uniform3(-1.0..1.0), turn in prop::array::uniform3(-3.0..3.0),
     ) {
-        let robot = tree.robot();
+        let robot = tree.robot().unwrap();
         let tool = IsometryMatrix3::new(Vector3::from(shift), Vector3::from(turn));
         let (base, tip) = (format!("l{base}"), format!("l{tip}"));
         let tooled = robot.with_tool(&tip, "tool", &tool).unwrap();
@@ -131,8 +136,8 @@ proptest! {
     }
 
     #[test]
-    fn what_is_written_as_urdf_reads_back_with_every_double((tree, _) in case()) {
-        let robot = tree.robot();
+    fn what_is_written_as_urdf_reads_back_with_every_double(tree in trees()) {
+        let robot = tree.robot().unwrap();
         let text = robot.to_urdf().unwrap();
         let again = Robot::from_urdf(&text).unwrap();
         prop_assert_eq!(again.joints(), robot.joints());
@@ -142,9 +147,9 @@ proptest! {
 
     #[test]
     fn a_changed_robot_reads_back_to_the_last_places(
-        (tree, [base, tip, pick]) in case(), zero in -0.5..0.5, rpy in prop::array::uniform3(-3.0..3.0),
+        ChainCase { tree, base, tip } in chains(), pick in any::<Index>(), zero in -0.5..0.5, rpy in prop::array::uniform3(-3.0..3.0),
     ) {
-        let robot = tree.robot();
+        let robot = tree.robot().unwrap();
         let Some(name) = mover(&robot, pick) else { return Ok(()) };
         let mut calibration = Calibration::default();
         calibration.insert(&name, JointCorrection { zero, rpy, reversed: true, ..JointCorrection::default() });
@@ -160,15 +165,13 @@ proptest! {
     }
 
     #[test]
-    fn the_poses_of_all_links_are_those_of_the_chains((tree, _) in case()) {
-        let robot = tree.robot();
-        let position = |name: &str| tree.q[name[1..].parse::<usize>().unwrap()];
-        let positions: Vec<f64> = robot.joints().iter().map(|joint| position(&joint.name)).collect();
-        let poses = robot.link_poses(&positions);
-        for (link, found) in robot.links().iter().zip(&poses) {
-            let expected = tree.poses()[link.name[1..].parse::<usize>().unwrap()];
-            let turn = expected.rotation.to_rotation_matrix();
-            prop_assert!(distance(found, &IsometryMatrix3::from_parts(expected.translation, turn)) < 1e-12);
+    fn the_poses_of_all_links_are_those_of_the_chains(tree in trees()) {
+        let robot = tree.robot().unwrap();
+        let position = |joint: &Joint| tree.position_of(&joint.name).unwrap();
+        let positions: Vec<f64> = robot.joints().iter().map(position).collect();
+        let (found, expected) = (robot.link_poses(&positions), poses(&tree));
+        for (link, found) in robot.links().iter().zip(&found) {
+            prop_assert!(distance(found, &expected[link.name[1..].parse::<usize>().unwrap()]) < 1e-12);
         }
     }
 }

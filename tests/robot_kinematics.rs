@@ -1,5 +1,7 @@
-//! Identities of pose and Jacobian on random trees of all joint types, random base and tip, mimic included.
+//! Identities of pose and Jacobian on random trees of all joint types, random base and tip, mimic included. A failure prints the
+//! shrunk tree as URDF.
 #![cfg(feature = "proptest")]
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 mod trees;
 
@@ -7,8 +9,10 @@ use std::collections::HashMap;
 
 use kinstep::nalgebra::{IsometryMatrix3, Rotation3, UnitQuaternion, Vector3, Vector6};
 use kinstep::robot::{Chain, ChainError, Robot};
+use kinstep::study::strategies::{ChainCase, TreeCase, chains, trees};
 use proptest::prelude::*;
-use trees::{TestTree, case, distance};
+use proptest::sample::Index;
+use trees::{distance, poses};
 
 /// A chain run at the tree's positions: pose and the Jacobian's columns by joint name.
 struct Run {
@@ -17,7 +21,7 @@ struct Run {
 }
 
 /// Runs the chain between two links; from a link to itself the pose is the identity.
-fn run(robot: &Robot, tree: &TestTree, base: usize, tip: usize) -> Run {
+fn run(robot: &Robot, tree: &TreeCase, base: usize, tip: usize) -> Run {
     match robot.chain(&format!("l{base}"), &format!("l{tip}")) {
         Ok(chain) => run_chain(&chain, tree),
         Err(ChainError::SameLink { .. }) => {
@@ -27,7 +31,7 @@ fn run(robot: &Robot, tree: &TestTree, base: usize, tip: usize) -> Run {
     }
 }
 
-fn run_chain(chain: &Chain, tree: &TestTree) -> Run {
+fn run_chain(chain: &Chain, tree: &TreeCase) -> Run {
     let mut scratch = chain.scratch();
     let mut columns = vec![Vector6::repeat(f64::NAN); chain.dof()];
     let posed = chain.forward(&tree.q_of(chain), &mut scratch);
@@ -67,25 +71,29 @@ fn differenced(chain: &Chain, q: &[f64], rates: &[f64]) -> Vector6<f64> {
     twist(linear, UnitQuaternion::from_rotation_matrix(&turn).scaled_axis() / (2.0 * STEP))
 }
 
+/// A tree with two of its links, and a third.
+fn with_another() -> impl Strategy<Value = (ChainCase, usize)> {
+    (chains(), any::<Index>()).prop_map(|(case, other)| {
+        let other = other.index(case.tree.links());
+        (case, other)
+    })
+}
+
 proptest! {
     #[test]
-    fn the_folded_chain_is_the_product_of_all_frames((tree, [base, tip, _]) in case()) {
-        let robot = tree.robot();
-        let poses = tree.poses();
-        let expected = poses[base].inv_mul(&poses[tip]);
-        let expected = IsometryMatrix3::from_parts(expected.translation, expected.rotation.to_rotation_matrix());
-        prop_assert!(distance(&run(&robot, &tree, base, tip).pose, &expected) < 1e-12);
+    fn the_folded_chain_is_the_product_of_all_frames(case in chains()) {
+        let (chain, poses) = (case.chain().unwrap(), poses(&case.tree));
+        let expected = poses[case.base].inverse() * poses[case.tip];
+        prop_assert!(distance(&run_chain(&chain, &case.tree).pose, &expected) < 1e-12);
     }
 
     #[test]
     fn every_column_is_a_central_difference_and_j_qdot_is_the_twist(
-        (tree, [base, tip, _]) in case(),
+        case in chains(),
         rates in prop::collection::vec(-1.0..1.0, 10),
     ) {
-        let robot = tree.robot();
-        let Ok(chain) = robot.chain(&format!("l{base}"), &format!("l{tip}")) else { return Ok(()) };
-        let q = tree.q_of(&chain);
-        let run = run_chain(&chain, &tree);
+        let (chain, q) = (case.chain().unwrap(), case.q());
+        let run = run_chain(&chain, &case.tree);
         let mut moved = Vector6::zeros();
         for (index, own) in chain.joints().iter().enumerate() {
             let mut unit = vec![0.0; chain.dof()];
@@ -97,8 +105,8 @@ proptest! {
     }
 
     #[test]
-    fn a_reversed_path_is_minus_the_adjoint((tree, [base, tip, _]) in case()) {
-        let robot = tree.robot();
+    fn a_reversed_path_is_minus_the_adjoint(ChainCase { tree, base, tip } in chains()) {
+        let robot = tree.robot().unwrap();
         let (there, back) = (run(&robot, &tree, base, tip), run(&robot, &tree, tip, base));
         prop_assert!(distance(&back.pose, &there.pose.inverse()) < 1e-12);
         prop_assert_eq!(there.columns.len(), back.columns.len());
@@ -111,8 +119,8 @@ proptest! {
     }
 
     #[test]
-    fn chains_compose((tree, [a, b, c]) in case()) {
-        let robot = tree.robot();
+    fn chains_compose((ChainCase { tree, base: a, tip: c }, b) in with_another()) {
+        let robot = tree.robot().unwrap();
         let (ab, bc, ac) = (run(&robot, &tree, a, b), run(&robot, &tree, b, c), run(&robot, &tree, a, c));
         prop_assert!(distance(&(ab.pose * bc.pose), &ac.pose) < 1e-12);
         let arm = ab.pose.rotation * bc.pose.translation.vector;
@@ -125,9 +133,11 @@ proptest! {
     }
 
     #[test]
-    fn a_relative_chain_is_the_difference_of_absolute_ones((tree, [left, right, _]) in case()) {
-        let robot = tree.robot();
-        let (one, two) = (run(&robot, &tree, 0, left), run(&robot, &tree, 0, right));
+    fn a_relative_chain_is_the_difference_of_absolute_ones(
+        (ChainCase { tree, base: left, tip: right }, from) in with_another(),
+    ) {
+        let robot = tree.robot().unwrap();
+        let (one, two) = (run(&robot, &tree, from, left), run(&robot, &tree, from, right));
         let relative = run(&robot, &tree, left, right);
         let turn = one.pose.rotation.inverse();
         let apart = two.pose.translation.vector - one.pose.translation.vector;
@@ -140,14 +150,13 @@ proptest! {
 
     #[test]
     fn a_mount_moves_the_pose_and_turns_the_jacobian(
-        (tree, [base, tip, _]) in case(),
+        case in chains(),
         shift in prop::array::uniform3(-3.0..3.0),
         turn in prop::array::uniform3(-3.0..3.0),
     ) {
-        let robot = tree.robot();
-        let Ok(chain) = robot.chain(&format!("l{base}"), &format!("l{tip}")) else { return Ok(()) };
+        let (chain, tree) = (case.chain().unwrap(), &case.tree);
         let mount = IsometryMatrix3::new(Vector3::from(shift), Vector3::from(turn));
-        let (plain, mounted) = (run_chain(&chain, &tree), run_chain(&chain.mounted(&mount), &tree));
+        let (plain, mounted) = (run_chain(&chain, tree), run_chain(&chain.mounted(&mount), tree));
         prop_assert!(distance(&mounted.pose, &(mount * plain.pose)) < 1e-12);
         for name in plain.columns.keys() {
             let expected = twist(mount.rotation * plain.linear(name), mount.rotation * plain.angular(name));
@@ -156,19 +165,17 @@ proptest! {
     }
 
     #[test]
-    fn two_poses_are_never_further_apart_than_twice_the_reach((tree, [base, tip, _]) in case(), scale in -1.0..1.0) {
-        let robot = tree.robot();
-        let Ok(chain) = robot.chain(&format!("l{base}"), &format!("l{tip}")) else { return Ok(()) };
-        let q = tree.q_of(&chain);
+    fn two_poses_are_never_further_apart_than_twice_the_reach(case in chains(), scale in -1.0..1.0) {
+        let (chain, q) = (case.chain().unwrap(), case.q());
         let other: Vec<f64> = q.iter().map(|q| scale * q).collect();
         let at = |q: &[f64]| chain.forward(q, &mut chain.scratch()).position();
         prop_assert!((at(&q) - at(&other)).norm() <= 2.0 * chain.reach() + 1e-12);
     }
 
     #[test]
-    fn parents_stand_before_their_children((tree, _) in case()) {
-        let robot = tree.robot();
-        prop_assert_eq!(robot.links().len(), tree.joints.len() + 1);
+    fn parents_stand_before_their_children(tree in trees()) {
+        let robot = tree.robot().unwrap();
+        prop_assert_eq!(robot.links().len(), tree.links());
         prop_assert!(robot.joints().iter().all(|own| own.parent < own.child));
         let drawn: Vec<_> = robot.tree().collect();
         prop_assert_eq!(drawn.len(), robot.links().len());

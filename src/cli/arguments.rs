@@ -42,9 +42,10 @@ Examples:
   kinstep plan mine.toml --out results --figures
   kinstep plan mine.toml --set sigma=0.005 --set law.h=0.3
   kinstep plan mine.toml --set formula=split-ab6 --set law.h=1 --json
+  kinstep plan mine.toml --set noise.position=1e-4 --set noise.joints=1e-5     white noise in what is measured
   kinstep plan mine.toml --set 'arm.left.q0=[0.1, 0.2, \"pi/2\", 0]'
 
-Setting one of law.h and law.gain takes the other away.")]
+Setting one of law.h and law.gain takes the other away. Written are trajectory.csv, plan.json, scenario.toml and report.html, the page to look at.")]
     Plan(PlanArguments),
     /// Draw what was saved by plan --out, order --out or sweep --out: figures as SVG, PNG or PDF, their numbers as CSV
     #[command(after_help = "\
@@ -59,7 +60,10 @@ Examples:
 Figures of a plan: motion, paths, errors, joints, velocities, manipulability, singular, condition, limits.")]
     Plot(PlotArguments),
     /// Run the paper's experiments beside the bounds that it states; exit 1 if one is missed
-    #[command(after_help = "Examples:\n  kinstep reproduce\n  kinstep reproduce --out paper --json")]
+    #[command(after_help = "\
+Examples:
+  kinstep reproduce
+  kinstep reproduce --out paper --json          the trajectories, a page of each, and reproduce.json")]
     Reproduce(ReproduceArguments),
     /// Study which order runs really show: of scenarios, of textbook problems, of your own row
     #[command(after_help = "\
@@ -70,7 +74,8 @@ Examples:
   kinstep order swing --formulas mine.toml --formula my-formula
   kinstep order kepler --formula ab8 --set study.precision=extended
 
-A row that does not reach the order it is held to exits with 1, a finest run that stops with 5.")]
+Written are the figure and the numbers of every study. A row that does not reach the order it is held to exits with 1, a finest
+run that stops with 5.")]
     Order(OrderArguments),
     /// Plan a scenario many times, with values from lists and distributions, into one table
     #[command(after_help = "\
@@ -78,6 +83,7 @@ Examples:
   kinstep sweep mine.toml --vary law.h=0.1,0.2,0.4 --vary sigma=0.02,0.01 --out grid.csv
   kinstep sweep mine.toml --vary formula=la6-wang-guo,split-ab4 --vary 'law.h=linspace(0.1, 0.6, 11)' --out rows.csv
   kinstep sweep a.toml b.toml --vary 'arm.left.q0[2]=normal(0.3, 0.05)' --samples 1000 --out scatter.json
+  kinstep sweep mine.toml --vary noise.position=1e-5,1e-4 --vary 'noise.seed=linspace(1, 20, 20)' --out noise.csv
 
 Values: a,b,c  linspace(from, to, count)  logspace(from, to, count)  uniform(from, to)  loguniform(from, to)
 normal(mean, deviation). A sweep that was interrupted goes on where it stopped when the same command is given again.")]
@@ -96,14 +102,25 @@ normal(mean, deviation). A sweep that was interrupted goes on where it stopped w
     Schema(SchemaArguments),
 }
 
+/// Where the files of a command go.
+#[derive(Debug, Args)]
+pub(super) struct OutArguments {
+    /// Folder for what is written; made if it is not there
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+
+    /// Replace files that are already there
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
 #[derive(Debug, Args)]
 pub(super) struct PlanArguments {
     /// The scenario, a TOML file (`kinstep schema scenario` has its keys)
     pub(super) scenario: Option<PathBuf>,
 
-    /// Folder for trajectory.csv, plan.json, scenario.toml and report.html; made if it is not there
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) written: OutArguments,
 
     /// Leave out report.html, the page with the replay and the figures
     #[arg(long, requires = "out")]
@@ -116,10 +133,6 @@ pub(super) struct PlanArguments {
     /// Lay a value over the scenario; arms by name. May be given again
     #[arg(long, value_name = "KEY.PATH=VALUE")]
     pub(super) set: Vec<String>,
-
-    /// Replace files that are already there
-    #[arg(long)]
-    pub(super) force: bool,
 }
 
 #[derive(Debug, Args)]
@@ -220,13 +233,8 @@ pub(super) struct OrderArguments {
     #[arg(long, value_name = "KEY.PATH=VALUE")]
     pub(super) set: Vec<String>,
 
-    /// Folder for the figure and the numbers of every study; made if it is not there
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-
-    /// Replace files that are already there
-    #[arg(long)]
-    pub(super) force: bool,
+    #[command(flatten)]
+    pub(super) written: OutArguments,
 }
 
 #[derive(Debug, Args)]
@@ -266,9 +274,8 @@ pub(super) struct SweepArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ReproduceArguments {
-    /// Folder for the trajectories, a page of each and reproduce.json; made if it is not there
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) written: OutArguments,
 
     /// Leave out the pages
     #[arg(long, requires = "out")]
@@ -277,10 +284,6 @@ pub(super) struct ReproduceArguments {
     /// Write the page about the paper, in Markdown, with every order measured anew
     #[arg(long, value_name = "FILE", conflicts_with = "out")]
     pub(super) page: Option<PathBuf>,
-
-    /// Replace files that are already there
-    #[arg(long)]
-    pub(super) force: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -330,7 +333,8 @@ Examples:
   kinstep formula search --steps 8 --order 5 --beat la9-240 --out found
   kinstep formula search --steps 5 --order 4 --family corrected --objective noise
 
-The same arguments and seed find the same rows, whatever the number of threads, unless --seconds cuts the search short.")]
+The same arguments and seed find the same rows, whatever the number of threads, unless --seconds cuts the search short.
+Written are rows.toml, front.csv and the figure front.svg.")]
     Search(FormulaSearch),
     /// Compare formulas side by side
     #[command(after_help = "\
@@ -422,13 +426,8 @@ pub(super) struct FormulaSearch {
     #[arg(long, default_value_t = 3)]
     pub(super) rows: usize,
 
-    /// Folder for rows.toml, front.csv and the figure front.svg; made if it is not there
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-
-    /// Replace files that are already there
-    #[arg(long)]
-    pub(super) force: bool,
+    #[command(flatten)]
+    pub(super) written: OutArguments,
 }
 
 #[derive(Debug, Args)]

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use super::arguments::OutArguments;
 use super::failure::{Exit, Failure};
 use crate::report::{WriteError, write_whole};
 
@@ -40,6 +41,13 @@ impl Folder {
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
         write_whole(&self.path.join(name), self.replace, content).map_err(|e| failure(&e))
+    }
+}
+
+impl OutArguments {
+    /// [Opens](Folder::open) the folder that was asked for, if one was.
+    pub(super) fn folder(&self, names: &[&str]) -> Result<Option<Folder>, Failure> {
+        self.out.as_deref().map(|path| Folder::open(path, self.force, names)).transpose()
     }
 }
 

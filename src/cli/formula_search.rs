@@ -11,7 +11,6 @@ use serde::Serialize;
 
 use super::arguments::FormulaSearch;
 use super::failure::{Exit, Failure};
-use super::folder::Folder;
 use super::formula::checked;
 use super::output::{Output, Show};
 use crate::formula::search::Figures;
@@ -28,11 +27,7 @@ const PICTURE: &str = "front.svg";
 
 pub(super) fn run(arguments: &FormulaSearch, own_rows: &[Row], output: &mut Output) -> Result<Exit, Failure> {
     let options = options(arguments, own_rows)?;
-    let folder = arguments
-        .out
-        .as_deref()
-        .map(|path| Folder::open(path, arguments.force, &[ROWS, FRONT, PICTURE]))
-        .transpose()?;
+    let folder = arguments.written.folder(&[ROWS, FRONT, PICTURE])?;
     let watcher = Watcher::new(output.wants_json());
     let outcome = search(&options, &watcher);
     watcher.bar.finish_and_clear();
@@ -109,7 +104,7 @@ fn options(arguments: &FormulaSearch, own_rows: &[Row]) -> Result<Options, Failu
         seed: arguments.seed,
         starts: arguments.starts,
         rows: arguments.rows,
-        front: arguments.out.is_some(),
+        front: arguments.written.out.is_some(),
         limit: Some(Duration::from_secs_f64(arguments.seconds)),
         threads: arguments.threads,
         ..Options::new(family, arguments.steps, arguments.order, objective)

@@ -115,7 +115,9 @@ fn prepare(name: &str, text: &ScenarioText, own: Option<&Path>, ids: &[String]) 
 }
 
 fn open(arguments: &OrderArguments, prepared: &[Studied]) -> Result<Option<Folder>, Failure> {
-    let Some(path) = &arguments.out else { return Ok(None) };
+    if arguments.written.out.is_none() {
+        return Ok(None);
+    }
     let names: Vec<String> = prepared.iter().flat_map(Studied::file_names).collect();
     let mut sorted = names.clone();
     sorted.sort_unstable();
@@ -125,7 +127,7 @@ fn open(arguments: &OrderArguments, prepared: &[Studied]) -> Result<Option<Folde
         )));
     }
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    Folder::open(path, arguments.force, &names).map(Some)
+    arguments.written.folder(&names)
 }
 
 fn write(folder: &Folder, studied: &Studied) -> Result<(), Failure> {

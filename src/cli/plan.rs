@@ -5,7 +5,6 @@ use std::path::Path;
 use super::arguments::PictureFormat;
 use super::arguments::PlanArguments;
 use super::failure::{Exit, Failure};
-use super::folder::Folder;
 use super::output::Output;
 use super::plot;
 use super::progress::Progress;
@@ -39,11 +38,7 @@ pub(super) fn run(
     let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
     let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
     keep_starts(&mut scenario, &planner);
-    let folder = arguments
-        .out
-        .as_deref()
-        .map(|path| Folder::open(path, arguments.force, &names(arguments)))
-        .transpose()?;
+    let folder = arguments.written.folder(&names(arguments))?;
     let mut plan = run_planner(planner);
     plan.warnings.extend(rows.warnings());
     let names_formula = scenario.formula.is_some();
@@ -59,7 +54,12 @@ pub(super) fn run(
         folder.write("scenario.toml", |out| out.write_all(again.as_bytes()))?;
         let figures = plan_figures(recording, Some(&plan));
         if arguments.figures {
-            plot::write(&folder.path().join(FIGURES), arguments.force, &figures, &[PictureFormat::Svg])?;
+            plot::write(
+                &folder.path().join(FIGURES),
+                arguments.written.force,
+                &figures,
+                &[PictureFormat::Svg],
+            )?;
         }
         if !arguments.no_report {
             let page = PlanPage {
@@ -162,7 +162,7 @@ fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, scenari
     let name = arguments.scenario.as_ref().map_or_else(String::new, |file| format!(" {}", file.display()));
     let mut next = Vec::new();
     let mut written = String::new();
-    match &arguments.out {
+    match &arguments.written.out {
         Some(folder) => {
             written = format!("\nWritten to {}: {}.\n", folder.display(), names(arguments).join(", "))
         }

@@ -171,7 +171,7 @@ struct Decade {
 
 pub(super) fn run(arguments: &ReproduceArguments, output: &mut Output) -> Result<Exit, Failure> {
     if let Some(page) = &arguments.page {
-        return write_page(page, arguments.force, output);
+        return write_page(page, arguments.written.force, output);
     }
     let experiments = experiments();
     let endings: &[&str] = if arguments.no_report { &["csv"] } else { &["csv", "html"] };
@@ -179,8 +179,7 @@ pub(super) fn run(arguments: &ReproduceArguments, output: &mut Output) -> Result
     let mut names: Vec<String> = experiments.iter().filter_map(Experiment::stem).flat_map(of_stem).collect();
     names.push("reproduce.json".to_owned());
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let folder =
-        arguments.out.as_deref().map(|path| Folder::open(path, arguments.force, &names)).transpose()?;
+    let folder = arguments.written.folder(&names)?;
     let reproduction = run_all(&experiments, folder.as_ref(), !arguments.no_report)?;
     if let Some(folder) = &folder {
         folder.write("reproduce.json", |out| Ok(serde_json::to_writer_pretty(out, &reproduction)?))?;

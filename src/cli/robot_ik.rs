@@ -16,6 +16,9 @@ use crate::robot::Chain;
 /// Largest length \[m\] or angle \[rad\] that is believed.
 const MAX_SIZE: f64 = 1e6;
 
+/// Below this a position counts as zero in the text [rad or m]: no double that stands beside a 1 has a place for it.
+const NOTHING: f64 = 1e-16;
+
 pub(super) fn run(arguments: &InverseArguments, output: &mut Output) -> Result<Exit, Failure> {
     let InverseArguments { file, base, tip, tool, .. } = arguments;
     let (chain, _) = tooled_chain(file, [base, tip], tool.as_deref(), output)?;
@@ -122,7 +125,7 @@ struct Answer {
 impl Answer {
     fn new(arguments: &InverseArguments, chain: &Chain, solution: &Solution) -> Self {
         let rotation = solution.tip.rotation.matrix();
-        let q: Vec<String> = solution.q.iter().map(f64::to_string).collect();
+        let q: Vec<String> = solution.q.iter().map(|&q| or_zero(q).to_string()).collect();
         Self {
             found: solution.is_found(),
             joints: chain.joints().iter().map(|joint| joint.name.clone()).collect(),
@@ -138,6 +141,11 @@ impl Answer {
             again: again(arguments, &q.join(",")),
         }
     }
+}
+
+/// The number, or the zero that a person expects where rounding left something smaller than any angle or length.
+fn or_zero(number: f64) -> f64 {
+    if number.abs() < NOTHING { 0.0 } else { number }
 }
 
 /// The command that gives the pose at the joint positions `q` of the same chain.
@@ -177,7 +185,7 @@ impl Show for Answer {
         let mut table = Table::new(["joint", "position", "lower", "upper"]);
         let limit = |value: f64| if value.is_finite() { short(value) } else { "-".to_owned() };
         for ((joint, q), [lower, upper]) in self.joints.iter().zip(&self.q).zip(&self.limits) {
-            table.row([joint.clone(), format!("{q:.9}"), limit(*lower), limit(*upper)]);
+            table.row([joint.clone(), format!("{:.9}", or_zero(*q)), limit(*lower), limit(*upper)]);
         }
         let _ = write!(text, "\n{table}\nPositions in rad or m. To check:\n  {}\n", self.again);
         text

@@ -132,6 +132,11 @@ impl<T: Scalar> Multistep<T> {
         self.x.get(0)
     }
 
+    /// The state `x_n`, to put in its place what was measured of it, before it is [evaluated](Self::evaluate).
+    pub fn state_mut(&mut self) -> &mut [T] {
+        self.x.newest_mut()
+    }
+
     /// The index `n` of the state.
     pub fn index(&self) -> usize {
         self.index

@@ -31,6 +31,11 @@ impl<T: Copy> Ring<T> {
         &self.samples[slot * self.blocks..][..self.blocks]
     }
 
+    /// The newest sample, for writing; there has to be room for one.
+    pub(super) fn newest_mut(&mut self) -> &mut [T] {
+        &mut self.samples[self.newest * self.blocks..][..self.blocks].as_flattened_mut()[..self.dimension]
+    }
+
     /// Makes room for a new sample (the oldest one goes) and lends it for writing.
     pub(super) fn push(&mut self) -> &mut [T] {
         let dimension = self.dimension;

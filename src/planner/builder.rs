@@ -1,6 +1,6 @@
 use super::field::SynchronousField;
 use super::shared::{self, SharedArms};
-use super::{Arm, Planner, PlannerError};
+use super::{Arm, Noise, Planner, PlannerError};
 use crate::formula::{Formula, FormulaTable};
 use crate::integrate::{Multistep, Starter};
 use num_traits::ToPrimitive;
@@ -81,6 +81,7 @@ pub struct PlannerBuilder {
     start: Start,
     arms: Vec<Arm>,
     allow_unstable: bool,
+    noise: Noise,
 }
 
 impl PlannerBuilder {
@@ -152,6 +153,13 @@ impl PlannerBuilder {
         self
     }
 
+    /// The noise that the loop suffers; without this call there is none.
+    #[must_use]
+    pub fn noise(mut self, noise: Noise) -> Self {
+        self.noise = noise;
+        self
+    }
+
     /// Checks everything and allocates all that a step needs.
     ///
     /// # Errors
@@ -159,6 +167,7 @@ impl PlannerBuilder {
     pub fn build(self) -> Result<Planner, PlannerError> {
         let formula = self.formula.as_ref().ok_or(PlannerError::NoFormula)?;
         self.check_arms()?;
+        self.noise.check()?;
         let mut warnings = Vec::new();
         let (sigma, steps) = self.grid(&mut warnings)?;
         let gamma_sum = formula.gamma_sum().to_f64().unwrap_or(f64::NAN);
@@ -182,7 +191,8 @@ impl PlannerBuilder {
             steps,
             warnings,
         };
-        Ok(Planner::begin(description, stepper, field))
+        let planner = Planner::begin(description, stepper, field);
+        Ok(if self.noise.is_silent() { planner } else { planner.with_noise(self.noise) })
     }
 
     fn check_arms(&self) -> Result<(), PlannerError> {

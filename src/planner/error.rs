@@ -54,6 +54,14 @@ pub enum PlannerError {
         /// What was given.
         value: f64,
     },
+    /// The noise has something that is no standard deviation.
+    #[error("the noise `{what}` is {value}; a standard deviation is a number, zero or positive")]
+    Noise {
+        /// Which of its numbers.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+    },
     /// The feedback step lies outside the range in which the loop is stable.
     #[error(
         "h = {shown} lies outside the feedback range {range} of formula `{formula}`: the closed loop would not be stable there; choose h inside the range, or allow unstable runs",

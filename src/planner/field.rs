@@ -1,5 +1,6 @@
 use super::Arm;
 use super::bundle::Bundle;
+use super::noise::Disturbance;
 use super::shared::{self, SharedArms};
 use crate::integrate::{Field, Parts};
 use crate::law::{Demand, Resolution};
@@ -17,6 +18,8 @@ pub(super) struct ArmRuntime {
     pub(super) columns: Vec<Vector6<f64>>,
     pub(super) error: Vector6<f64>,
     pub(super) resolution: Resolution,
+    /// What the loop sees in place of the truth; nothing but the truth without noise.
+    pub(super) disturbance: Option<Disturbance>,
     /// Whether it shares joints with other arms.
     pub(super) is_shared: bool,
     /// Whether there are fewer joints than task components, its own or those of all arms that it shares joints with.
@@ -34,6 +37,7 @@ impl ArmRuntime {
             columns: vec![Vector6::zeros(); joints],
             error: Vector6::zeros(),
             resolution: Resolution { smallest_singular_value: f64::INFINITY, damped: false },
+            disturbance: None,
             is_shared: false,
             has_too_few_joints: joints < arm.task.rows(),
             arm,
@@ -44,14 +48,23 @@ impl ArmRuntime {
     /// Forward kinematics, task error and both parts of the joint velocity at time `t`.
     pub(super) fn evaluate(&mut self, t: f64, gain: f64, q: &[f64], f: &mut [f64], g: &mut [f64]) {
         let twist = self.look(t, q);
+        let (twist, error) = self.measured(twist);
         let demand = Demand {
             rows: self.arm.task.rows(),
             jacobian: &self.columns,
             q,
             feedforward: &twist,
-            feedback: &(self.error * -gain),
+            feedback: &(error * -gain),
         };
         self.resolution = self.arm.law.resolve(&demand, f, g);
+    }
+
+    /// The twist of the reference and the task error as the loop sees them.
+    pub(super) fn measured(&self, twist: Vector6<f64>) -> (Vector6<f64>, Vector6<f64>) {
+        match &self.disturbance {
+            None => (twist, self.error),
+            Some(noise) => (twist + noise.twist, self.error + noise.error),
+        }
     }
 
     /// Forward kinematics, Jacobian and task error at time `t`; returns the twist of the reference.
@@ -147,6 +160,25 @@ impl SynchronousField {
             self.arms[arm].has_too_few_joints |= shared.has_too_few_joints();
         }
         self.shared.push(shared);
+    }
+
+    /// The same with every arm evaluated by itself.
+    pub(super) fn one_by_one(mut self) -> Self {
+        let members = self.groups.into_iter().flat_map(|group| group.members);
+        self.groups = members.map(|member| Group { members: vec![member], lanes: Lanes::None }).collect();
+        self
+    }
+
+    /// Finds the task errors of all arms at other joint positions than those that were evaluated.
+    pub(super) fn look(&mut self, t: f64, x: &[f64]) {
+        for Member { arm, from } in self.groups.iter().flat_map(|group| &group.members) {
+            let runtime = &mut self.arms[*arm];
+            let joints = runtime.arm.chain.dof();
+            runtime.look(t, &x[*from..from + joints]);
+        }
+        for shared in &mut self.shared {
+            shared.look(&mut self.arms, t, x);
+        }
     }
 
     /// The joint positions of all arms at the start, as a state.

@@ -1,4 +1,4 @@
-use super::Violation;
+use super::{Noise, Violation};
 use nalgebra::Vector6;
 
 /// How a run ended.
@@ -51,6 +51,8 @@ pub struct ArmPlan {
     pub max_error_component: f64,
     /// The largest norm of the task error over the second half of the run, where the start is forgotten.
     pub max_error_steady: f64,
+    /// The root mean square of the norm of the task error over the second half of the run.
+    pub rms_error_steady: f64,
     /// The largest position error \[m\].
     pub max_position_error: f64,
     /// The largest orientation error \[rad\].
@@ -105,6 +107,8 @@ pub struct Plan {
     pub start: &'static str,
     /// Steps of the whole plan; a run that stopped has fewer.
     pub steps: usize,
+    /// The noise that the loop suffered, if there was any.
+    pub noise: Option<Noise>,
     /// What each arm did.
     pub arms: Vec<ArmPlan>,
     /// Which arms shared joints, and were resolved as one system.

@@ -1,7 +1,8 @@
 use super::diagnosis;
 use super::field::{ArmRuntime, SynchronousField};
 use super::monitor::{Deviation, Monitor};
-use super::{ArmPlan, Plan, PlanStatus, PlannerBuilder};
+use super::noise::NoisyLoop;
+use super::{ArmPlan, Noise, Plan, PlanStatus, PlannerBuilder};
 use crate::integrate::{Field, Multistep, Status};
 use crate::task::Reference;
 use nalgebra::Vector6;
@@ -81,6 +82,7 @@ pub struct Planner {
     stepper: Multistep<f64>,
     field: SynchronousField,
     monitors: Vec<Monitor>,
+    noisy: Option<NoisyLoop>,
     /// Whether each arm has met a singularity that it has not recovered from, one sample ago.
     was_singular: Vec<bool>,
     stop: Option<Stop>,
@@ -103,10 +105,28 @@ impl Planner {
         let sigma = description.sigma;
         let monitors = field.arms.iter().map(|runtime| Monitor::new(&runtime.arm.chain, sigma)).collect();
         let was_singular = vec![true; field.arms.len()];
-        let mut planner = Self { description, stepper, field, monitors, was_singular, stop: None };
+        let mut planner =
+            Self { description, stepper, field, monitors, noisy: None, was_singular, stop: None };
         planner.watch();
         planner.check_start();
         planner
+    }
+
+    /// The same with noise, from the next sample on.
+    pub(super) fn with_noise(mut self, noise: Noise) -> Self {
+        self.noisy = Some(NoisyLoop::new(noise, self.stepper.state().to_vec()));
+        self.field = self.field.one_by_one();
+        self
+    }
+
+    /// Whether the loop suffers noise.
+    pub(super) fn is_noisy(&self) -> bool {
+        self.noisy.is_some()
+    }
+
+    /// The joint positions sent to the robot at the present sample.
+    fn commanded(&self) -> &[f64] {
+        self.noisy.as_ref().map_or(self.stepper.state(), NoisyLoop::commanded)
     }
 
     /// The index of the present sample.
@@ -154,8 +174,7 @@ impl Planner {
     /// # Panics
     /// If there is no arm `i`.
     pub fn arm(&self, i: usize) -> ArmState<'_> {
-        let [positions, velocities] =
-            self.field.joints_of(i, self.stepper.state(), self.stepper.derivative());
+        let [positions, velocities] = self.field.joints_of(i, self.commanded(), self.stepper.derivative());
         ArmState {
             positions,
             velocities,
@@ -178,7 +197,10 @@ impl Planner {
     /// sending positions on.
     pub fn step(&mut self) {
         if self.advance() {
-            self.stepper.evaluate(&mut self.field);
+            match &mut self.noisy {
+                None => self.stepper.evaluate(&mut self.field),
+                Some(noisy) => noisy.evaluate(&mut self.stepper, &mut self.field),
+            }
             self.look_around();
         }
     }
@@ -261,6 +283,7 @@ impl Planner {
             plan.max_error = monitor.max_error();
             plan.max_error_component = monitor.max_error_component;
             plan.max_error_steady = steady_maximum(&plan.errors);
+            plan.rms_error_steady = steady_mean_square(&plan.errors).sqrt();
             plan.max_position_error = monitor.max_position_error();
             plan.max_orientation_error = monitor.max_orientation_error();
             plan.smallest_singular_value = (monitor.smallest_singular_value, monitor.smallest_at);
@@ -274,13 +297,15 @@ impl Planner {
         };
         let Description { formula, sigma, h, start, steps, .. } = self.description;
         let shared = self.field.shared.iter().map(|shared| shared.report(&self.field.arms)).collect();
-        Plan { status, reason, formula, sigma, h, start, steps, arms, shared, warnings }
+        let noise = self.noisy.map(|noisy| *noisy.noise());
+        Plan { status, reason, formula, sigma, h, start, steps, noise, arms, shared, warnings }
     }
 
     /// Observes the present sample: errors, limits, conditioning.
     fn watch(&mut self) {
         let t = self.stepper.time();
-        let (state, derivative) = (self.stepper.state(), self.stepper.derivative());
+        let state = self.noisy.as_ref().map_or(self.stepper.state(), NoisyLoop::commanded);
+        let derivative = self.stepper.derivative();
         for (i, (runtime, monitor)) in self.field.arms.iter().zip(&mut self.monitors).enumerate() {
             let [q, velocity] = self.field.joints_of(i, state, derivative);
             monitor.observe_error(&runtime.error, &Deviation::of(&runtime.error));
@@ -413,6 +438,11 @@ fn steady_maximum(errors: &[Vector6<f64>]) -> f64 {
     errors[errors.len() / 2..].iter().map(Vector6::norm).fold(0.0, f64::max)
 }
 
+fn steady_mean_square(errors: &[Vector6<f64>]) -> f64 {
+    let half = &errors[errors.len() / 2..];
+    half.iter().map(Vector6::norm_squared).sum::<f64>() / half.len() as f64
+}
+
 fn damping_warning(plan: &ArmPlan, threshold: f64) -> Option<String> {
     let (smallest, at) = plan.smallest_singular_value;
     (plan.damped_samples > 1).then(|| {
@@ -435,6 +465,7 @@ fn empty_plan(runtime: &ArmRuntime, steps: usize) -> ArmPlan {
         max_error: 0.0,
         max_error_component: 0.0,
         max_error_steady: 0.0,
+        rms_error_steady: 0.0,
         max_position_error: 0.0,
         max_orientation_error: 0.0,
         smallest_singular_value: (f64::INFINITY, 0.0),

@@ -108,9 +108,10 @@ impl SharedArms {
             let runtime = &mut arms[member.arm];
             gather(x, &member.places, &mut member.positions);
             let twist = runtime.look(t, &member.positions);
+            let (twist, error) = runtime.measured(twist);
             for row in 0..member.rows {
                 forward[member.first_row + row] = twist[row];
-                back[member.first_row + row] = -gain * runtime.error[row];
+                back[member.first_row + row] = -gain * error[row];
             }
             for (column, &place) in runtime.columns.iter().zip(&member.places) {
                 let entries = &mut self.law.column(place, member.first_row)[..member.rows];
@@ -121,6 +122,15 @@ impl SharedArms {
         for member in &mut self.members {
             gather(f, &member.places, &mut member.velocities);
             arms[member.arm].resolution = resolution;
+        }
+    }
+
+    /// Kinematics and task errors of all members at time `t`, at other joint positions than those that were evaluated.
+    pub(super) fn look(&mut self, arms: &mut [ArmRuntime], t: f64, x: &[f64]) {
+        let x = &x[self.range()];
+        for member in &mut self.members {
+            gather(x, &member.places, &mut member.positions);
+            arms[member.arm].look(t, &member.positions);
         }
     }
 

@@ -57,7 +57,7 @@ fn is_alike(a: &Planner, b: &Planner) -> bool {
     a.sigma() == b.sigma()
         && a.field().gain == b.field().gain
         && a.field().arms.len() == b.field().arms.len()
-        && [a, b].iter().all(|planner| planner.field().shared.is_empty())
+        && [a, b].iter().all(|planner| planner.field().shared.is_empty() && !planner.is_noisy())
         && pairs().all(|(a, b)| Bundle::<Four>::new(&[&a.arm, &b.arm]).is_some())
 }
 

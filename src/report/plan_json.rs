@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use super::PlanFormat;
-use crate::planner::{ArmPlan, Plan};
+use crate::planner::{self, ArmPlan, Plan};
 
 /// The summary of a plan as JSON: how it ended, errors and limits by arm. The samples are not in it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,9 +28,21 @@ struct Document<'a> {
     start: &'static str,
     steps: usize,
     samples: usize,
+    noise: Option<Noise>,
     arms: Vec<Arm<'a>>,
     shared: Vec<Shared<'a>>,
     warnings: &'a [String],
+}
+
+/// The standard deviations of the noise that the loop suffered.
+#[derive(Serialize)]
+struct Noise {
+    seed: u64,
+    position: f64,
+    orientation: f64,
+    linear_velocity: f64,
+    angular_velocity: f64,
+    joints: f64,
 }
 
 /// Arms that were resolved as one system because they move joints in common.
@@ -47,6 +59,7 @@ struct Arm<'a> {
     max_error: f64,
     max_error_component: f64,
     max_error_steady: f64,
+    rms_error_steady: f64,
     max_position_error: f64,
     max_orientation_error: f64,
     smallest_singular_value: f64,
@@ -88,10 +101,19 @@ impl<'a> Document<'a> {
             start: plan.start,
             steps: plan.steps,
             samples: plan.samples(),
+            noise: plan.noise.as_ref().map(Noise::of),
             arms: plan.arms.iter().map(Arm::of).collect(),
             shared: plan.shared.iter().map(|s| Shared { arms: &s.arms, joints: &s.joints }).collect(),
             warnings: &plan.warnings,
         }
+    }
+}
+
+impl Noise {
+    fn of(noise: &planner::Noise) -> Self {
+        let planner::Noise { seed, position, orientation, linear_velocity, angular_velocity, joints } =
+            *noise;
+        Self { seed, position, orientation, linear_velocity, angular_velocity, joints }
     }
 }
 
@@ -110,6 +132,7 @@ impl<'a> Arm<'a> {
             max_error: arm.max_error,
             max_error_component: arm.max_error_component,
             max_error_steady: arm.max_error_steady,
+            rms_error_steady: arm.rms_error_steady,
             max_position_error: arm.max_position_error,
             max_orientation_error: arm.max_orientation_error,
             smallest_singular_value: arm.smallest_singular_value.0,

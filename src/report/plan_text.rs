@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::{PlanFormat, Table, short, sparkline};
 use crate::math::figure;
-use crate::planner::{ArmPlan, Plan};
+use crate::planner::{ArmPlan, Noise, Plan};
 
 /// Width of the curves of the task errors [characters].
 const CURVE: usize = 64;
@@ -26,6 +26,7 @@ impl PlanFormat for PlanText {
             figure(plan.sigma)
         )?;
         writeln!(out, "formula {}, h = {}, start {}", plan.formula, short(plan.h), plan.start)?;
+        plan.noise.iter().try_for_each(|noise| writeln!(out, "{}", disturbed_by(noise)))?;
         for shared in &plan.shared {
             let (arms, joints) = (shared.arms.join(" and "), shared.joints.join(", "));
             writeln!(out, "{arms} share {joints}: solved as one system")?;
@@ -35,6 +36,9 @@ impl PlanFormat for PlanText {
             Some(reason) => writeln!(out, "stopped, {}: {reason}\n", plan.status.name())?,
         }
         write!(out, "{}", errors(plan))?;
+        if plan.noise.is_some() {
+            writeln!(out, "\nroot mean square of the error in the second half: {}", mean_squares(plan))?;
+        }
         plan.arms.iter().try_for_each(|arm| start(arm, out))?;
         writeln!(out, "\ntask error over time, logarithmic:")?;
         let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
@@ -47,6 +51,17 @@ impl PlanFormat for PlanText {
         }
         plan.warnings.iter().try_for_each(|warning| writeln!(out, "\nwarning: {warning}"))
     }
+}
+
+fn disturbed_by(noise: &Noise) -> String {
+    let loud = noise.deviations().into_iter().filter(|deviation| deviation.3 > 0.0);
+    let loud: Vec<_> = loud.map(|(_, of, unit, value)| format!("{} {unit} in {of}", short(value))).collect();
+    format!("white noise of seed {}: {}", noise.seed, loud.join(", "))
+}
+
+fn mean_squares(plan: &Plan) -> String {
+    let figures = plan.arms.iter().map(|arm| format!("{} {:.2e}", arm.name, arm.rms_error_steady));
+    figures.collect::<Vec<_>>().join(", ")
 }
 
 /// Where an arm begins, if that was solved for.

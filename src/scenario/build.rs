@@ -7,6 +7,7 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Unit, Vector3};
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
 use super::model::{ArmSpec, LawKind, Mount, Scenario, Start};
+use super::noise_spec::NoiseSpec;
 use super::path_spec::{PathKind, PathSpec, TimeLawKind};
 use super::real::Real;
 use super::robots::RobotSource;
@@ -64,7 +65,8 @@ impl Scenario {
             .sigma(self.sigma.value())
             .duration(self.duration.value())
             .allow_unstable(self.allow_unstable)
-            .start(self.start.map_or(planner::Start::Sufficient, Start::planned));
+            .start(self.start.map_or(planner::Start::Sufficient, Start::planned))
+            .noise(self.noise.as_ref().map(NoiseSpec::noise).unwrap_or_default());
         match (&self.law.h, &self.law.gain) {
             (Some(h), _) => builder.h(h.value()),
             (None, Some(gain)) => builder.gain(gain.value()),

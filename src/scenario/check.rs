@@ -3,6 +3,7 @@
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
 use super::model::{ArmSpec, Scenario};
+use super::noise_spec::NoiseSpec;
 use super::path_spec::{PathKind, PathSpec, TurnSpec};
 use super::real::Real;
 use super::start_pose::{self, StartPose};
@@ -32,6 +33,7 @@ impl Scenario {
     pub fn check(&self) -> Result<(), ScenarioError> {
         let arms = KeyPath::dotted("arm");
         let mut found = vec![self.check_time(), self.check_law()];
+        found.extend(self.noise.as_ref().map(NoiseSpec::check));
         found.extend(self.study.as_ref().map(StudySpec::check));
         if self.problem.is_some() {
             found.push(require(self.arm.is_empty(), &arms, || {

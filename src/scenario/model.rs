@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::held::Held;
+use super::noise_spec::NoiseSpec;
 use super::path_spec::PathSpec;
 use super::real::{Real, exactly};
 use super::start_pose::StartPose;
@@ -35,6 +36,9 @@ pub struct Scenario {
     /// How redundancy is resolved, and how strongly the task error is fed back.
     #[serde(default)]
     pub law: LawSpec,
+    /// The noise that the loop suffers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<NoiseSpec>,
     /// How the order of the run is studied by `kinstep order`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study: Option<StudySpec>,

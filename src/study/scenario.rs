@@ -1,6 +1,6 @@
 //! The order study of a scenario: its ladder, its rows, and what each row is held to.
 
-use super::convergence::{Convergence, Criteria};
+use super::convergence::{Convergence, Criteria, Undecidable, Verdict};
 use super::ladder::Ladder;
 use super::measure::Measure;
 use super::order::{OrderReport, OrderStudy, Orders};
@@ -22,6 +22,8 @@ const MOST_STEPS: f64 = 1e7;
 const RUNGS: usize = 13;
 /// A chosen ladder begins where a fixed gain gives at most this fraction of the feedback range.
 const OF_RANGE: f64 = 0.6;
+/// From this order on, errors on arms meet the floor of doubles before slopes have settled.
+const HIGH_ORDER: usize = 6;
 /// The row that joint trajectories are compared with, and its feedback step.
 const JOINT_REFERENCE: (&str, f64) = ("split-ab8", 1.0);
 /// Tolerances of the extrapolation for runs in doubles and with 32 digits.
@@ -89,6 +91,7 @@ impl ScenarioStudy {
         ids: &[String],
     ) -> Result<Self, ScenarioError> {
         scenario.check()?;
+        refuse_noise(scenario)?;
         let spec = scenario.study.clone().unwrap_or_default();
         let rows_studied = chosen_rows(scenario, &spec, rows, ids)?;
         let ladder = ladder(scenario, &spec, &rows_studied)?;
@@ -198,6 +201,7 @@ impl ScenarioStudy {
             }
         };
         report.notes.splice(0..0, note);
+        report.notes.extend(limit_of_doubles(row, &report));
         Ok(report)
     }
 
@@ -323,6 +327,32 @@ fn chosen_rows(
         chosen.push(row.clone());
     }
     Ok(chosen)
+}
+
+/// Arms are run in doubles. Where these do not reach far enough to decide, the same row shows its order with more digits.
+fn limit_of_doubles(row: &Formula, report: &OrderReport) -> Option<String> {
+    let task = [&report.task_transient, &report.task_steady].into_iter().flatten();
+    let ends_at_floor = |seen: &Convergence| {
+        matches!(
+            seen.verdict,
+            Verdict::Undecidable(Undecidable::AtFloor { .. } | Undecidable::TooFewRungs { .. })
+        )
+    };
+    (row.order() >= HIGH_ORDER && task.into_iter().any(ends_at_floor)).then(|| {
+        format!(
+            "arms are run in doubles, where rounding hides errors of so high an order; with 32 digits it shows in `kinstep order kepler --formula {} --set study.precision=extended`",
+            row.id()
+        )
+    })
+}
+
+/// Noise does not fall with the gap: it would hide every order.
+fn refuse_noise(scenario: &Scenario) -> Result<(), ScenarioError> {
+    if scenario.noise.as_ref().is_none_or(|spec| spec.noise().is_silent()) {
+        return Ok(());
+    }
+    let problem = "no order can be seen through noise; take the table [noise] away, or set its numbers to 0";
+    Err(ScenarioError::at(ErrorKind::Scenario, &KeyPath::dotted("noise"), problem))
 }
 
 fn ladder(scenario: &Scenario, spec: &StudySpec, rows: &[Formula]) -> Result<Ladder, ScenarioError> {

@@ -1,17 +1,11 @@
 //! Random serial arms, away from singularity where they stand.
 
-use crate::math::SingularValues;
+use super::configuration::{is_away, singular_values};
 use crate::robot::{Chain, Robot};
 use crate::task::TaskKind;
-use nalgebra::Vector6;
 use proptest::prelude::*;
 use proptest::sample::select;
 use std::fmt::{self, Write as _};
-
-/// Arms start at most this badly conditioned, so that a moderate path stays well below 100.
-const CONDITION_AT_START: f64 = 25.0;
-/// And with no singular value below this.
-const SMALLEST_AT_START: f64 = 0.05;
 
 /// The axes drawn for spatial arms; URDF normalises them.
 const AXES: [[i8; 3]; 8] =
@@ -58,14 +52,14 @@ impl ArmCase {
                 text,
                 "  <link name=\"{child}\"/>\n  <joint name=\"j{}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/><origin xyz=\"{}\"/><axis xyz=\"{axis}\"/>{limit}</joint>",
                 i + 1,
-                metres(origin)
+                in_twentieths(origin)
             );
             (parent, origin) = (child, joint.offset);
         }
         let _ = writeln!(
             text,
             "  <link name=\"tip\"/>\n  <joint name=\"flange\" type=\"fixed\"><parent link=\"{parent}\"/><child link=\"tip\"/><origin xyz=\"{}\"/></joint>\n</robot>",
-            metres(origin)
+            in_twentieths(origin)
         );
         text
     }
@@ -86,31 +80,17 @@ impl ArmCase {
 
     /// The smallest and the largest singular value of the task Jacobian at `q`.
     pub fn singular_values(&self, chain: &Chain, q: &[f64]) -> (f64, f64) {
-        let mut columns = vec![Vector6::zeros(); chain.dof()];
-        chain.forward(q, &mut chain.scratch()).geometric_jacobian(&mut columns);
-        match self.task {
-            TaskKind::PositionXy => ends::<2>(&columns),
-            TaskKind::Position => ends::<3>(&columns),
-            TaskKind::Pose => ends::<6>(&columns),
-        }
+        singular_values(chain, self.task, q)
     }
 
     fn starts_well(&self) -> bool {
-        self.chain().is_some_and(|chain| {
-            let (smallest, largest) = self.singular_values(&chain, &self.q0());
-            chain.dof() == self.joints.len()
-                && smallest >= SMALLEST_AT_START
-                && largest <= CONDITION_AT_START * smallest
-        })
+        self.chain()
+            .is_some_and(|chain| chain.dof() == self.joints.len() && is_away(&chain, self.task, &self.q0()))
     }
 }
 
-fn ends<const M: usize>(columns: &[Vector6<f64>]) -> (f64, f64) {
-    let values = SingularValues::<M>::of(columns);
-    (values.smallest(), values.largest())
-}
-
-fn metres(offset: [i8; 3]) -> String {
+/// A place on a link, in metres.
+pub(super) fn in_twentieths(offset: [i8; 3]) -> String {
     offset.map(|entry| (f64::from(entry) / 20.0).to_string()).join(" ")
 }
 
@@ -172,7 +152,7 @@ mod tests {
             prop_assert!((4..=9).contains(&chain.dof()));
             prop_assert!(chain.limit_violations(&arm.q0()).next().is_none());
             let (smallest, largest) = arm.singular_values(&chain, &arm.q0());
-            prop_assert!(largest / smallest <= CONDITION_AT_START);
+            prop_assert!(largest / smallest <= 25.0);
         }
     }
 }

@@ -196,6 +196,7 @@ impl OrderCase {
             formulas: if is_builtin { Vec::new() } else { vec![row] },
             allow_unstable: false,
             law: scenario::LawSpec { h, gain, ..scenario::LawSpec::default() },
+            noise: None,
             study: Some(StudySpec { steps: Some(steps), order: self.orders.task, ..StudySpec::default() }),
             problem: None,
             arm: vec![arm],

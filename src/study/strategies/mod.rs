@@ -1,4 +1,5 @@
-//! Strategies for property tests with proptest: random formulas, serial arms, paths, and whole order studies of them.
+//! Strategies for property tests with proptest: random formulas, serial arms, trees, configurations away from or near to
+//! singularity, paths, and whole order studies of them.
 //!
 //! Everything is made through the doors that people use (rows as TOML, robots as URDF), shrinks to few joints, small
 //! numbers and round figures; a whole study prints a scenario file, robot and row inside, that does it again.
@@ -18,14 +19,18 @@
 
 mod arm;
 mod case;
+mod configuration;
 mod formula;
 mod path;
 mod rational;
+mod tree;
 
 pub use arm::{ArmCase, JointCase, arms};
 pub use case::{OrderCase, UnstableCase, diverging, order_at_fixed_gain, order_at_fixed_step};
+pub use configuration::{ConfigurationCase, away_from_singularity, towards_singularity};
 pub use formula::{
     FormulaCase, adams_like, feedback_steps, formulas, from_table, look_ahead, overshooting_steps,
     unstable_formulas,
 };
 pub use path::{PathCase, Shape, TimeLawCase, paths, time_laws};
+pub use tree::{ChainCase, Follower, TreeCase, TreeJoint, chains, trees};

@@ -1,5 +1,6 @@
 //! What varies: a key of the scenario with a list of values or a distribution.
 
+use crate::math::{normal, unit};
 use thiserror::Error;
 
 /// The most values of one list.
@@ -114,25 +115,6 @@ fn exact(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// Splits the random bits into a number in [0, 1).
-fn unit(draw: u64) -> f64 {
-    (draw >> 11) as f64 / (1_u64 << 53) as f64
-}
-
-/// The mixing function of S. Vigna's splitmix64.
-pub(super) fn mix(value: u64) -> u64 {
-    let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    value ^ (value >> 31)
-}
-
-/// A standard normal number, by the transformation of Box and Muller.
-fn normal(draw: u64) -> f64 {
-    let (u, v) = (1.0 - unit(draw), unit(mix(draw)));
-    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
-}
-
 /// Splits `name(arguments)`.
 fn call(text: &str) -> Option<(&str, &str)> {
     let (name, rest) = text.split_once('(')?;
@@ -207,6 +189,7 @@ fn list(text: &str) -> Result<Vec<String>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::mix;
 
     #[test]
     fn lists_are_split_where_people_would_split_them() {

@@ -1,6 +1,7 @@
 //! The cases of a sweep, by their numbers, and what came of each.
 
-use super::axis::{Axis, mix};
+use super::axis::Axis;
+use crate::math::mix;
 use crate::planner::{Plan, Planner, run_together};
 use crate::scenario::{FormulaRows, ScenarioError, ScenarioText};
 
@@ -49,16 +50,17 @@ pub struct Figures {
     pub(super) start: &'static str,
     pub(super) steps: usize,
     /// In the order of [`Figures::NAMES`].
-    pub(super) numbers: [f64; 9],
+    pub(super) numbers: [f64; 10],
 }
 
 impl Figures {
-    pub(super) const NAMES: [&'static str; 9] = [
+    pub(super) const NAMES: [&'static str; 10] = [
         "sigma",
         "h",
         "max_error",
         "max_error_component",
         "max_error_steady",
+        "rms_error_steady",
         "max_position_error",
         "max_orientation_error",
         "smallest_singular_value",
@@ -78,6 +80,7 @@ impl Figures {
                 worst(|arm| arm.max_error),
                 worst(|arm| arm.max_error_component),
                 worst(|arm| arm.max_error_steady),
+                worst(|arm| arm.rms_error_steady),
                 worst(|arm| arm.max_position_error),
                 worst(|arm| arm.max_orientation_error),
                 plan.arms.iter().map(|arm| arm.smallest_singular_value.0).fold(f64::INFINITY, f64::min),
