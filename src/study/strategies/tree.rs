@@ -61,8 +61,8 @@ impl TreeCase {
         if self.children_first {
             lines.reverse();
         }
-        let links: String = (0..self.links()).map(|link| format!("<link name=\"l{link}\"/>")).collect();
-        format!("<robot name=\"random\">\n  {links}\n{}</robot>\n", lines.concat())
+        let links: Vec<String> = (0..self.links()).map(|link| format!("<link name=\"l{link}\"/>")).collect();
+        format!("<robot name=\"random\">\n  {}\n{}</robot>\n", links.concat(), lines.concat())
     }
 
     /// The robot, read from the robot file. `None` if the file does not read, which its own tests rule out.
