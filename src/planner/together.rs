@@ -12,7 +12,7 @@ type Four = [f64; 4];
 /// [`Planner::run`], to the last bit, in the order of the planners.
 ///
 /// Plans are alike when they have the same gap and gain, and the same number of arms that move in the same way, with tasks
-/// of the same kind, the plain least-norm law and no common joints: one robot from many places, on many paths, by many
+/// of the same kind, the plain least-norm law, no common joints and no noise: one robot from many places, on many paths, by many
 /// formulas of one gain. All others run by themselves. For more threads, give each of them some of the planners.
 ///
 /// ```

@@ -293,7 +293,7 @@ fn value_or(number: Option<&Real>, default: f64) -> f64 {
 
 impl PathSpec {
     /// Returns the motion along the path of a tip that stands at `start`.
-    pub(super) fn motion(&self, start: &IsometryMatrix3<f64>, duration: f64) -> Motion {
+    pub(crate) fn motion(&self, start: &IsometryMatrix3<f64>, duration: f64) -> Motion {
         let time_law = self.time_law.unwrap_or(TimeLawKind::Sin2).planned();
         let path = self.path(start);
         match &self.center {

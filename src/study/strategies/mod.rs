@@ -32,5 +32,5 @@ pub use formula::{
     FormulaCase, adams_like, feedback_steps, formulas, from_table, look_ahead, overshooting_steps,
     unstable_formulas,
 };
-pub use path::{PathCase, Shape, TimeLawCase, paths, time_laws};
+pub use path::{PathCase, Shape, TimeLawCase, open_paths, paths, time_laws};
 pub use tree::{ChainCase, Follower, TreeCase, TreeJoint, chains, trees};

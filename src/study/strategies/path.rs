@@ -1,9 +1,9 @@
-//! Random smooth closed paths and the laws by which time runs along them.
+//! Random smooth paths, closed and open ones, and the laws by which time runs along them.
 
 use crate::scenario::{PathKind, PathSpec, Real, TimeLawKind, TurnSpec};
 use crate::task::{
-    Astroid, Circle, Fourier, Leaning, Linear, Lissajous, Path, Planar, PlanarCurve, Plane, Quintic, Rose,
-    Sin2, Sin2Sin2, TaskKind, TimeLaw, Tricuspid,
+    Astroid, Circle, Fourier, Leaning, Line, Linear, Lissajous, Path, Planar, PlanarCurve, Plane, Quintic,
+    Rose, Sin2, Sin2Sin2, TaskKind, TimeLaw, Tricuspid,
 };
 use nalgebra::{Unit, Vector3};
 use proptest::prelude::*;
@@ -20,7 +20,12 @@ fn coefficient(k: usize, mode: [i8; 3], scale: f64) -> Vector3<f64> {
     Vector3::from(mode.map(|entry| f64::from(entry) / 10.0)) * scale / ((k + 1) as f64).powi(3)
 }
 
-/// The form of a closed path.
+/// The displacement of a line \[m\].
+fn line(direction: [i8; 3], scale: f64) -> Vector3<f64> {
+    Vector3::from(direction.map(f64::from)) * scale
+}
+
+/// The form of a path.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// `sum_m (a_m (cos 2 pi m u - 1) + b_m sin 2 pi m u) / m^3` with the vectors `(a_m, b_m)` \[1/10\].
@@ -35,9 +40,13 @@ pub enum Shape {
     Lissajous(u8, u8),
     /// A rose of that many petals.
     Rose(u8),
+    /// A straight line in that direction, open.
+    Line([i8; 3]),
+    /// That much of a circle \[degrees\], open.
+    Arc(u16),
 }
 
-/// A closed path of a given extent, in space or in the plane of x and y.
+/// A path of a given extent, in space or in the plane of x and y.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathCase {
     /// Its form.
@@ -81,9 +90,16 @@ impl PathCase {
             Shape::Rose(petals) => {
                 (spec.radius, spec.petals) = (Some(scale.into()), Some(f64::from(*petals).into()));
             }
+            Shape::Line(direction) => {
+                spec.displacement = Some(line(*direction, scale).iter().map(|&entry| entry.into()).collect());
+            }
+            Shape::Arc(degrees) => {
+                (spec.radius, spec.sweep) =
+                    (Some(scale.into()), Some(f64::from(*degrees).to_radians().into()));
+            }
             _ => spec.radius = Some(scale.into()),
         }
-        if !matches!(self.shape, Shape::Fourier(_)) {
+        if !matches!(self.shape, Shape::Fourier(_) | Shape::Line(_)) {
             spec.rotation = Some(f64::from(self.rotation).to_radians().into());
         }
         spec.time_law = Some(law.kind());
@@ -99,7 +115,8 @@ impl PathCase {
     fn kind(&self) -> PathKind {
         match self.shape {
             Shape::Fourier(_) => PathKind::Fourier,
-            Shape::Circle => PathKind::Circle,
+            Shape::Circle | Shape::Arc(_) => PathKind::Circle,
+            Shape::Line(_) => PathKind::Line,
             Shape::Tricuspid => PathKind::Tricuspid,
             Shape::Astroid => PathKind::Astroid,
             Shape::Lissajous(..) => PathKind::Lissajous,
@@ -112,7 +129,7 @@ impl PathCase {
         let unit = self.scaled(1.0);
         let start = unit.point(0.0).position;
         let distance = |k: u32| (unit.point(f64::from(k) / 64.0).position - start).norm();
-        let size = (1..64).map(distance).fold(0.0, f64::max);
+        let size = (1..=64).map(distance).fold(0.0, f64::max);
         self.extent(smallest_singular_value) / size
     }
 
@@ -122,10 +139,11 @@ impl PathCase {
     }
 
     fn scaled(&self, scale: f64) -> Box<dyn Path> {
-        let planar = |curve: Box<dyn PlanarCurve>| {
+        let part = |curve: Box<dyn PlanarCurve>, sweep: f64| {
             let rotation = f64::from(self.rotation).to_radians();
-            Box::new(Planar::new(curve, Plane::Xy, rotation, 0.0, TAU)) as Box<dyn Path>
+            Box::new(Planar::new(curve, Plane::Xy, rotation, 0.0, sweep)) as Box<dyn Path>
         };
+        let planar = |curve: Box<dyn PlanarCurve>| part(curve, TAU);
         match &self.shape {
             Shape::Fourier(modes) => {
                 let vectors = |which: usize| {
@@ -140,6 +158,8 @@ impl PathCase {
                 let frequencies = [f64::from(*x), f64::from(*y)];
                 planar(Box::new(Lissajous { amplitudes: [scale, scale], frequencies, phase: PHASE }))
             }
+            Shape::Line(direction) => Box::new(Line { displacement: line(*direction, scale) }),
+            Shape::Arc(degrees) => part(Box::new(Circle { radius: scale }), f64::from(*degrees).to_radians()),
             Shape::Rose(petals) => planar(Box::new(Rose { radius: scale, petals: f64::from(*petals) })),
         }
     }
@@ -148,6 +168,7 @@ impl PathCase {
     fn moves_in_plane(&self) -> bool {
         match &self.shape {
             Shape::Fourier(modes) => modes.iter().flatten().any(|v| v[0] != 0 || v[1] != 0),
+            Shape::Line(direction) => direction[0] != 0 || direction[1] != 0,
             _ => true,
         }
     }
@@ -205,6 +226,16 @@ pub fn paths() -> impl Strategy<Value = PathCase> + Clone {
         1 => (1_u8..=2, 1_u8..=3).prop_map(|(x, y)| Shape::Lissajous(x, y)),
         1 => (2_u8..=3).prop_map(Shape::Rose),
     ];
+    of_shape(shape)
+}
+
+/// Lines and arcs that move in x and y at least, of the same extent as [`paths`]: they end away from where they begin.
+pub fn open_paths() -> impl Strategy<Value = PathCase> + Clone {
+    let line = prop::array::uniform3(-10_i8..=10).prop_map(Shape::Line);
+    of_shape(prop_oneof![line, (30_u16..=270).prop_map(Shape::Arc)])
+}
+
+fn of_shape(shape: impl Strategy<Value = Shape> + Clone) -> impl Strategy<Value = PathCase> + Clone {
     (shape, -9_i16..=9, 0_u8..=1, 10_u8..=60)
         .prop_map(|(shape, turns, lean, extent)| PathCase { shape, rotation: 20 * turns, lean, extent })
         .prop_filter("moves in x and y", PathCase::moves_in_plane)
@@ -215,19 +246,46 @@ mod tests {
     use super::*;
     use crate::math::rotation_vector;
 
+    /// What holds for all paths.
+    fn check(case: &PathCase, u: f64) -> Result<(), TestCaseError> {
+        let path = case.path(0.5);
+        let at = |u: f64| path.point(u).position;
+        let extent = (0..=64).map(|k| (at(f64::from(k) / 64.0) - at(0.0)).norm()).fold(0.0, f64::max);
+        prop_assert!((extent - 0.005 * f64::from(case.extent)).abs() < 1e-12);
+        let step = 1e-5;
+        let difference = (at(u + step) - at(u - step)) / (2.0 * step);
+        prop_assert!((difference - path.point(u).tangent).norm() < 1e-7);
+        let turn = path.turn(u + step).0 * path.turn(u - step).0.inverse();
+        prop_assert!((rotation_vector(&turn) / (2.0 * step) - path.turn(u).1).norm() < 1e-7);
+        Ok(())
+    }
+
+    /// How far the end is from the beginning.
+    fn gap(case: &PathCase) -> f64 {
+        let path = case.path(0.5);
+        (path.point(1.0).position - path.point(0.0).position).norm()
+    }
+
     proptest! {
         #[test]
         fn paths_close_keep_their_extent_and_know_their_derivative(case in paths(), u in 0.0..1.0_f64) {
-            let path = case.path(0.5);
-            let at = |u: f64| path.point(u).position;
-            prop_assert!((at(1.0) - at(0.0)).norm() < 1e-12);
-            let extent = (0..=64).map(|k| (at(f64::from(k) / 64.0) - at(0.0)).norm()).fold(0.0, f64::max);
-            prop_assert!((extent - 0.005 * f64::from(case.extent)).abs() < 1e-12);
-            let step = 1e-5;
-            let difference = (at(u + step) - at(u - step)) / (2.0 * step);
-            prop_assert!((difference - path.point(u).tangent).norm() < 1e-7);
-            let turn = path.turn(u + step).0 * path.turn(u - step).0.inverse();
-            prop_assert!((rotation_vector(&turn) / (2.0 * step) - path.turn(u).1).norm() < 1e-7);
+            prop_assert!(gap(&case) < 1e-12);
+            check(&case, u)?;
+        }
+
+        #[test]
+        fn open_paths_stay_open_keep_their_extent_and_know_their_derivative(case in open_paths(), u in 0.0..1.0_f64) {
+            prop_assert!(gap(&case) > 0.002 * f64::from(case.extent));
+            check(&case, u)?;
+        }
+
+        #[test]
+        fn a_scenario_goes_the_same_way(case in prop_oneof![paths(), open_paths()], u in 0.0..1.0_f64) {
+            let start = nalgebra::IsometryMatrix3::identity();
+            let spec = case.spec(0.5, TaskKind::Pose, TimeLawCase::Linear);
+            let (one, other) = (spec.motion(&start, 1.0).at(u), crate::task::Motion::from_pose(case.path(0.5), Linear, 1.0, &start).at(u));
+            prop_assert!((one.position - other.position).norm() < 1e-12);
+            prop_assert!((one.rotation.matrix() - other.rotation.matrix()).norm() < 1e-12);
         }
     }
 }

@@ -61,8 +61,8 @@ impl TreeCase {
         if self.children_first {
             lines.reverse();
         }
-        let links: String = (0..self.links()).map(|link| format!("<link name=\"l{link}\"/>")).collect();
-        format!("<robot name=\"random\">\n  {links}\n{}</robot>\n", lines.concat())
+        let links: Vec<String> = (0..self.links()).map(|link| format!("<link name=\"l{link}\"/>")).collect();
+        format!("<robot name=\"random\">\n  {}\n{}</robot>\n", links.concat(), lines.concat())
     }
 
     /// The robot, read from the robot file. `None` if the file does not read, which its own tests rule out.
@@ -125,8 +125,9 @@ impl TreeJoint {
 
 impl fmt::Display for TreeCase {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let positions = (0..self.joints.len()).filter(|&i| self.joints[i].follower.is_none());
-        let positions: Vec<_> = positions.map(|i| format!("j{} = {}", i + 1, self.position(i))).collect();
+        let is_free = |joint: &TreeJoint| joint.kind != JointKind::Fixed && joint.follower.is_none();
+        let free = (0..self.joints.len()).filter(|&i| is_free(&self.joints[i]));
+        let positions: Vec<_> = free.map(|i| format!("j{} = {}", i + 1, self.position(i))).collect();
         write!(f, "{}\n{}", positions.join(", "), self.urdf())
     }
 }
@@ -172,7 +173,8 @@ impl fmt::Debug for ChainCase {
     }
 }
 
-/// Planar and spatial trees of 2 to 10 joints: revolute, continuous, prismatic and fixed ones, some of which follow others.
+/// Planar and spatial trees of 2 to 10 joints: revolute, continuous, prismatic and fixed ones, some of which follow others. At least
+/// one of them moves.
 pub fn trees() -> impl Strategy<Value = TreeCase> + Clone {
     let mixed = prop_oneof![
         3 => Just(JointKind::Revolute),
@@ -180,7 +182,8 @@ pub fn trees() -> impl Strategy<Value = TreeCase> + Clone {
         2 => Just(JointKind::Prismatic),
         1 => Just(JointKind::Fixed),
     ];
-    of_joints(2, mixed, true)
+    let moves = |tree: &TreeCase| tree.joints.iter().any(|joint| joint.kind != JointKind::Fixed);
+    of_joints(2, mixed, true).prop_filter("a joint moves", moves)
 }
 
 /// Trees of 4 to 10 joints that turn on their own.
