@@ -223,7 +223,9 @@ fn plans_are_written_with_their_page_unless_it_is_not_wanted() {
     assert!(run.out.contains("report.html"), "{}", run.out);
     let html = fs::read_to_string(folder.join("report.html")).unwrap();
     check(&html);
-    assert!(html.contains("<title>planar_dual – kinstep</title>") && html.contains("--set sigma="));
+    assert!(
+        html.contains("<title>planar_dual – kinstep</title>") && html.contains("--set formula=split-ab6")
+    );
     let refused = kinstep(&["plan", "--out", out]).expect(6);
     assert!(refused.err.contains("already there"));
     fs::remove_dir_all(&folder).unwrap();
