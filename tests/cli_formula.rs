@@ -268,6 +268,8 @@ fn the_reproduction_is_written_with_its_trajectories() {
     let run = desk.run(&["reproduce", "--out", "paper"]).expect(0);
     assert!(run.out.contains("Every bound of the paper is kept."), "{}", run.out);
     let names = desk.names("paper");
-    assert!(names.contains(&"reproduce.json".to_owned()) && names.len() == 9, "{names:?}");
+    assert!(names.contains(&"reproduce.json".to_owned()) && names.len() == 17, "{names:?}");
+    let pages = names.iter().filter(|name| name.ends_with(".html")).count();
+    assert_eq!(pages, 8, "{names:?}");
     desk.run(&["reproduce", "--out", "paper"]).expect(6);
 }

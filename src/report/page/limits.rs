@@ -56,7 +56,8 @@ impl Closeness {
 impl Use {
     /// Looks at joint `index` of an arm whose samples are `sigma` apart.
     fn of(arm: &ArmTrajectory, index: usize, limits: Limits, sigma: f64) -> Self {
-        let joints = arm.joints.len();
+        // No step is zero: an arm without joints has no samples of them either.
+        let joints = arm.joints.len().max(1);
         let every =
             |values: &[f64]| -> Vec<f64> { values.iter().skip(index).step_by(joints).copied().collect() };
         let positions = every(&arm.positions);

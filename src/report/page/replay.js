@@ -330,8 +330,8 @@
   })();
   const strip = points => ({ points: new Float32Array(points), inPairs: false });
   const lines = scene.arms.map(arm => ({ asked: strip(arm.asked), path: strip(arm.path) }));
-  const tripod = pose => [0, 1, 2].map(k => ({
-    line: { points: new Float32Array([...place(pose), ...moved(pose, [0, 1, 2].map(j => j === k ? 0.07 * size : 0))]), inPairs: true, isBrief: true },
+  const tripod = (pose, long) => [0, 1, 2].map(k => ({
+    line: { points: new Float32Array([...place(pose), ...moved(pose, [0, 1, 2].map(j => j === k ? long : 0))]), inPairs: true, isBrief: true },
     colour: [[0.85, 0.15, 0.15], [0.1, 0.6, 0.2], [0.15, 0.35, 0.9]][k],
   }));
 
@@ -534,7 +534,7 @@
     scene.arms.forEach((arm, i) => {
       const error = arm.errors[part > 0.5 ? frame + 1 : frame], tip = place(poses[arm.machine][arm.tip]);
       cells[i][0].textContent = error === undefined ? '–' : minus(error.toExponential(2));
-      tip.forEach((value, k) => { cells[i][k + 1].textContent = minus(value.toFixed(4)); });
+      tip.forEach((value, k) => { cells[i][k + 1].textContent = minus((+value.toFixed(4) || 0).toFixed(4)); });
     });
   };
 
@@ -564,7 +564,7 @@
       const ink = colours.arms[arm.colour], tip = poses[arm.machine][arm.tip];
       shown.push({ shape: lines[i].asked, ink: [...mix(ink, colours.sky, 0.62), 1], wide: 7 });
       shown.push({ shape: lines[i].path, ink: [...mix(ink, colours.ink, 0.25), 1], wide: 2, count: frame });
-      for (const { line, colour } of tripod(tip)) shown.push({ shape: line, ink: [...colour, 1], wide: 2.5 });
+      for (const { line, colour } of tripod(tip, Math.min(0.1 * reaches[arm.machine], 0.07 * size))) shown.push({ shape: line, ink: [...colour, 1], wide: 2.5 });
     });
     renderer.draw({ ...projection(width, height), density, solids: solids(poses, renderer.isPlain), lines: shown });
     for (const cursor of cursors) cursor();
@@ -657,7 +657,7 @@
     if (event.ctrlKey || event.altKey || event.metaKey || !(event.key in keys)) return;
     // Keys that something in focus has its own use for stay with it, and arrows scroll the page where the replay is not meant.
     if (!isRange && target.matches('input, select, textarea') || event.key === ' ' && target.matches('button, summary')) return;
-    if (isArrow && !by('replay').contains(target)) return;
+    if (!by('replay').contains(target) && (isArrow || target !== document.body)) return;
     if (event.key === ' ' && target.matches('.scroll, pre')) return;
     event.preventDefault();
     keys[event.key](event);
@@ -677,8 +677,10 @@
   root.addEventListener('themechange', recolour);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', recolour);
   addEventListener('resize', () => { redraw(); });
-  addEventListener('beforeprint', () => { readColours(); draw(); });
-  addEventListener('afterprint', recolour);
+  // What is folded is printed too, but for the keys.
+  const folded = document.querySelectorAll('details:not(#keys):not([open])');
+  addEventListener('beforeprint', () => { for (const part of folded) part.open = true; readColours(); draw(); });
+  addEventListener('afterprint', () => { for (const part of folded) part.open = false; recolour(); });
 
   by('time').min = times[0] || 0;
   by('time').max = times[last] || 0;

@@ -143,11 +143,17 @@ impl<'a> Arm<'a> {
             tip,
             links: between(robot, base, tip),
             joints: arm.joints.iter().map(joint).collect::<Option<_>>()?,
-            positions: singles(frames.iter().flat_map(|&n| arm.position(n).iter().copied())),
+            positions: singles(frames.iter().flat_map(|&n| position(arm, n).iter().copied())),
             errors: String::new(),
             strays: String::new(),
         })
     }
+}
+
+/// The positions of a sample, where there are any.
+fn position(arm: &ArmTrajectory, sample: usize) -> &[f64] {
+    let joints = arm.joints.len();
+    arm.positions.get(sample * joints..(sample + 1) * joints).unwrap_or_default()
 }
 
 /// The links on the way between two: up from either, without what is above both.

@@ -101,11 +101,7 @@ fn worst_of(plan: &Plan, arm: &ArmPlan) -> String {
     };
     let at = worst_sample(arm)
         .map_or_else(String::new, |sample| format!(", {}", moment(plan.time(sample), "the largest error")));
-    format!(
-        "{} strays at most {} m{turned} from its path{at}",
-        escaped(&arm.name),
-        plain(arm.max_position_error)
-    )
+    format!("{}: at most {} m{turned} from its path{at}", escaped(&arm.name), plain(arm.max_position_error))
 }
 
 /// The sample at which the task error was largest.

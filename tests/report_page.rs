@@ -1,0 +1,253 @@
+//! `report.html`: what a page holds, that nothing in it is taken for markup, and that it loads nothing.
+
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
+
+mod cli;
+
+use std::fs;
+use std::path::Path;
+
+use cli::{Desk, kinstep};
+use kinstep::formula::FormulaTable;
+use kinstep::planner::{Plan, PlanStatus};
+use kinstep::report::figure::plan_figures;
+use kinstep::report::{PlanPage, Suggestion};
+use kinstep::robot::embedded;
+use kinstep::scenario::ScenarioText;
+use kinstep::trajectory::{About, Recording, Stage, Trajectory};
+use serde_json::Value;
+
+const PLANAR: &str = include_str!("../examples/planar_dual.toml");
+
+/// A plan of a scenario's text, on its stage.
+fn run(text: &str, set: &[&str], folder: Option<&Path>) -> (Plan, Stage, String) {
+    let mut text = ScenarioText::parse(text).unwrap();
+    set.iter().for_each(|assignment| text.set(assignment).unwrap());
+    let scenario = text.scenario().unwrap();
+    let plan = scenario.planner(FormulaTable::builtin(), folder).unwrap().run();
+    let stage = scenario.stage(folder).unwrap();
+    (plan, stage, scenario.to_toml())
+}
+
+fn page_of(plan: &Plan, stage: &Stage, scenario: &str) -> String {
+    let trajectory = Trajectory::of(plan, Some(About::of(plan, scenario, stage)));
+    let recording = Recording { trajectory: &trajectory, stage };
+    let page = PlanPage {
+        title: "a <b> & \"c\"",
+        plan,
+        recording,
+        figures: &plan_figures(recording, Some(plan)),
+        scenario,
+        command: "kinstep plan scenario.toml",
+        suggestions: &[Suggestion::new("--set 'sigma=<x>'", "because <i>")],
+    };
+    page.to_html()
+}
+
+/// The data of the replay.
+fn scene(html: &str) -> Value {
+    let (_, rest) = html.split_once("<script type=\"application/json\" id=\"scene\">").unwrap();
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+}
+
+/// Checks that every element that is opened is closed, in order.
+#[track_caller]
+fn check_nesting(html: &str) {
+    const VOID: [&str; 5] = ["meta", "input", "br", "link", "img"];
+    let mut open: Vec<String> = Vec::new();
+    let mut rest = html.strip_prefix("<!DOCTYPE html>").unwrap();
+    while let Some(begin) = rest.find('<') {
+        rest = &rest[begin + 1..];
+        let end = rest.find('>').unwrap();
+        let (tag, after) = rest.split_at(end);
+        rest = &after[1..];
+        let name: String =
+            tag.chars().skip_while(|c| *c == '/').take_while(|c| c.is_ascii_alphanumeric()).collect();
+        assert!(!name.is_empty(), "<{tag}> is no element");
+        let mut attributes = tag.split_whitespace().skip(1).filter(|word| word.contains("=\""));
+        assert!(attributes.all(|word| !word.starts_with("on")), "<{tag}> has a handler");
+        if tag.starts_with('/') {
+            assert_eq!(open.pop().as_ref(), Some(&name), "</{tag}> closes nothing");
+        } else if !tag.ends_with('/') && !VOID.contains(&name.as_str()) {
+            if ["script", "style"].contains(&name.as_str()) {
+                let close = format!("</{name}>");
+                rest = &rest[rest.find(&close).unwrap() + close.len()..];
+            } else {
+                open.push(name);
+            }
+        }
+    }
+    assert!(open.is_empty(), "{open:?} stay open");
+}
+
+/// Checks that a page is whole and asks for nothing.
+#[track_caller]
+fn check(html: &str) {
+    check_nesting(html);
+    assert_eq!(html.matches("<script").count() - html.matches("id=\"scene\"").count(), 1);
+    assert!(html.contains("default-src 'none'; script-src 'sha256-"));
+    // Namespaces are names, not places.
+    let without_names = html.replace("http://www.w3.org/2000/svg", "");
+    for loads in ["http:", "https:", " src=", "url(//", "@import", "{{", "NaN,"] {
+        assert!(!without_names.contains(loads), "{loads:?} is in the page");
+    }
+}
+
+#[test]
+fn a_page_tells_of_its_plan_and_is_the_same_every_time() {
+    let (plan, stage, scenario) = run(PLANAR, &["duration=0.5"], None);
+    let html = page_of(&plan, &stage, &scenario);
+    check(&html);
+    assert_eq!(html, page_of(&plan, &stage, &scenario));
+    for said in [
+        "Completed",
+        "la6-wang-guo",
+        "&lt;b&gt; &amp; &quot;c&quot;",
+        "because &lt;i&gt;",
+        "kinstep.scenario_sha256",
+    ] {
+        assert!(html.contains(said), "{said:?} is not in the page");
+    }
+    assert!(html.matches("<figure class=\"figure\" data-time=").count() >= 4);
+    let scene = scene(&html);
+    assert_eq!(scene["arms"].as_array().unwrap().len(), 2);
+    assert_eq!(scene["machines"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn hostile_names_stay_names() {
+    let evil = "</script><script>alert(1)</script><!--\" onerror='x' {{title}} & \u{2028}";
+    let named = embedded::text("planar4").unwrap().replace("\"j1\"", &format!("\"{}\"", escaped(evil)));
+    let desk = Desk::new(&[("evil.urdf", &named)]);
+    let folder = desk.path("");
+    let text = PLANAR.replace("\"planar4\"", "\"evil.urdf\"");
+    let (mut plan, mut stage, scenario) = run(&text, &["duration=0.1"], Some(&folder));
+    assert_eq!(plan.arms[0].joints[0], evil);
+    // Scenarios refuse such names for arms; programs can give them.
+    plan.arms[0].name = evil.to_owned();
+    stage.arms[0].name = evil.to_owned();
+    plan.warnings.push(evil.to_owned());
+    let html = page_of(&plan, &stage, &scenario);
+    check_nesting(&html);
+    assert!(!html.contains("<script>alert") && !html.contains("<!--\""));
+    assert_eq!(html.matches("</script>").count(), 2);
+    assert_eq!(scene(&html)["arms"][0]["name"], evil);
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
+
+#[test]
+fn runs_that_stopped_have_a_page_too() {
+    let (whole, stage, scenario) = run(PLANAR, &["duration=0.1"], None);
+    for samples in [0, 1, 2] {
+        let mut plan = whole.clone();
+        plan.status = PlanStatus::NonFinite;
+        plan.reason = Some("joint <j> became NaN".to_owned());
+        for arm in &mut plan.arms {
+            let joints = arm.joints.len();
+            arm.positions.truncate(samples * joints);
+            arm.velocities.truncate(samples * joints);
+            arm.errors.truncate(samples);
+        }
+        let html = page_of(&plan, &stage, &scenario);
+        check(&html);
+        assert!(html.contains("Stopped") && html.contains("joint &lt;j&gt; became NaN"));
+        assert_eq!(html.contains("No sample was recorded"), samples == 0);
+    }
+    let diverging = ["law.h=1.9", "allow_unstable=true"];
+    let (plan, stage, scenario) = run(PLANAR, &diverging, None);
+    assert!(!plan.is_completed());
+    check(&page_of(&plan, &stage, &scenario));
+}
+
+#[test]
+fn numbers_that_are_not_finite_do_no_harm() {
+    let (mut plan, stage, scenario) = run(PLANAR, &["duration=0.1"], None);
+    plan.arms[0].positions[3] = f64::NAN;
+    plan.arms[0].velocities[3] = f64::INFINITY;
+    plan.arms[0].errors[1].x = f64::NAN;
+    plan.arms[0].max_error = f64::INFINITY;
+    plan.arms[0].smallest_singular_value = (f64::NAN, f64::NAN);
+    check(&page_of(&plan, &stage, &scenario));
+}
+
+#[test]
+fn a_long_run_makes_a_small_page() {
+    let (plan, stage, scenario) = run(PLANAR, &["sigma=0.0001"], None);
+    assert_eq!(plan.samples(), 100_001);
+    let html = page_of(&plan, &stage, &scenario);
+    assert!(html.len() < 3 << 20, "{} bytes", html.len());
+}
+
+#[test]
+fn meshes_are_found_reduced_and_reported_where_they_are_missing() {
+    let desk = Desk::new(&[]);
+    for folder in ["package/arm/meshes", "package/arm/urdf"] {
+        fs::create_dir_all(desk.path(folder)).unwrap();
+    }
+    fs::write(desk.path("package/arm/meshes/bar.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let visual = |file: &str| {
+        format!("<visual><geometry><mesh filename=\"package://arm/meshes/{file}\"/></geometry></visual>")
+    };
+    let urdf = format!(
+        "<robot name=\"r\"><link name=\"base\">{}</link><link name=\"tip\">{}<visual><geometry><box size=\"1 2 3\"/></geometry>\
+         </visual></link><joint name=\"j\" type=\"continuous\"><parent link=\"base\"/><child link=\"tip\"/><axis xyz=\"0 0 1\"/>\
+         </joint></robot>",
+        visual("bar.obj"),
+        visual("none.stl")
+    );
+    fs::write(desk.path("package/arm/urdf/r.urdf"), urdf).unwrap();
+    let text = "sigma = 0.1\nduration = 0.5\n[[arm]]\nname = \"a\"\nrobot = \"package/arm/urdf/r.urdf\"\nbase = \"base\"\n\
+                tip = \"tip\"\ntask = \"position\"\nq0 = [0]\npath = { kind = \"line\", displacement = [0, 0, 0] }\n";
+    let scenario = ScenarioText::parse(text).unwrap().scenario().unwrap();
+    let stage = scenario.stage(Some(&desk.path(""))).unwrap();
+    let (plan, ..) = run(PLANAR, &["duration=0.1"], None);
+    let html = page_of(&Plan { arms: Vec::new(), ..plan }, &stage, text);
+    let machine = &scene(&html)["machines"][0];
+    assert_eq!(machine["lacks"], true);
+    let shapes: Vec<&str> =
+        machine["looks"].as_array().unwrap().iter().map(|look| look["shape"].as_str().unwrap()).collect();
+    assert_eq!(shapes, ["mesh", "box"]);
+    assert!(html.contains("package://arm/meshes/none.stl was not found"));
+}
+
+#[test]
+fn plans_are_written_with_their_page_unless_it_is_not_wanted() {
+    let desk = Desk::new(&[]);
+    let folder = desk.path("out");
+    let out = folder.to_str().unwrap();
+    let run =
+        kinstep(&["plan", "examples/planar_dual.toml", "--set", "duration=0.2", "--out", out]).expect(0);
+    assert!(run.out.contains("report.html"), "{}", run.out);
+    let html = fs::read_to_string(folder.join("report.html")).unwrap();
+    check(&html);
+    assert!(
+        html.contains("<title>planar_dual – kinstep</title>") && html.contains("--set formula=split-ab6")
+    );
+    let refused = kinstep(&["plan", "--out", out]).expect(6);
+    assert!(refused.err.contains("already there"));
+    fs::remove_dir_all(&folder).unwrap();
+    kinstep(&["plan", "examples/planar_dual.toml", "--set", "duration=0.2", "--out", out, "--no-report"])
+        .expect(0);
+    assert!(!folder.join("report.html").exists());
+    kinstep(&["plan", "--no-report"]).expect(2);
+}
+
+#[test]
+fn many_arms_share_a_page() {
+    let arm = |k: usize| {
+        format!(
+            "[[arm]]\nname = \"arm{k}\"\nrobot = \"ur5e\"\nbase = \"base_link\"\ntip = \"tool0\"\nmount = {{ xyz = [{k}, 0, 0] }}\n\
+             task = \"pose\"\nq0 = [0.1, -1.2, 1.4, -1.0, -1.5, 0.2]\n\
+             path = {{ kind = \"circle\", radius = 0.05, time_law = \"quintic\" }}\n"
+        )
+    };
+    let text = (0..8).fold("sigma = 0.01\nduration = 1.0\n".to_owned(), |text, k| text + &arm(k));
+    let (plan, stage, scenario) = run(&text, &[], None);
+    let html = page_of(&plan, &stage, &scenario);
+    check(&html);
+    assert_eq!(scene(&html)["arms"].as_array().unwrap().len(), 8);
+    assert_eq!(scene(&html)["arms"][7]["colour"], 0, "colours begin again");
+}
