@@ -1,6 +1,7 @@
 //! `kinstep plan`: a scenario run, its trajectories written, and what to try next.
 
 use std::path::Path;
+use std::time::Instant;
 
 use super::arguments::PictureFormat;
 use super::arguments::PlanArguments;
@@ -13,7 +14,7 @@ use crate::formula::{Formula, FormulaTable};
 use crate::math::figure;
 use crate::planner::{LimitKind, Plan, PlanStatus, Planner};
 use crate::report::figure::plan_figures;
-use crate::report::{PlanFormat, PlanJson, PlanText};
+use crate::report::{PlanFormat, PlanJson, PlanText, plan_details};
 use crate::scenario::{FormulaRows, Real, Scenario, ScenarioText};
 use crate::trajectory::{About, Csv, Recording, Trajectory, TrajectoryFormat};
 
@@ -31,6 +32,7 @@ pub(super) fn run(
     own: Option<&Path>,
     output: &mut Output,
 ) -> Result<Exit, Failure> {
+    let mut clock = Stages::begin();
     let text = scenario_text(arguments)?;
     let mut scenario = text.scenario()?;
     let rows = formula_rows(&text, &scenario, own)?;
@@ -40,11 +42,18 @@ pub(super) fn run(
     keep_starts(&mut scenario, &planner);
     let folder =
         arguments.out.as_deref().map(|path| Folder::open(path, arguments.force, &NAMES)).transpose()?;
+    clock.done("reading");
     let mut plan = run_planner(planner);
+    clock.done("planning");
     plan.warnings.extend(rows.warnings());
     let names_formula = scenario.formula.is_some();
     // What is written down says what was run, whatever the default becomes later.
     scenario.formula.get_or_insert_with(|| plan.formula.clone());
+    let details = if output.is_verbose() && !output.wants_json() {
+        plan_details(&plan, &scenario.stage(text.folder()).map_err(|e| text.placed(e))?)
+    } else {
+        String::new()
+    };
     if let Some(folder) = &folder {
         let stage = scenario.stage(text.folder()).map_err(|e| text.placed(e))?;
         let again = scenario.relocated(text.folder(), own, folder.path())?.to_toml();
@@ -57,6 +66,10 @@ pub(super) fn run(
             let figures = plan_figures(recording, Some(&plan));
             plot::write(&folder.path().join(FIGURES), arguments.force, &figures, &[PictureFormat::Svg])?;
         }
+    }
+    clock.done("writing");
+    if output.is_quiet() {
+        grave(&plan).iter().for_each(|sentence| output.remark(sentence));
     }
     if output.wants_json() {
         output.text(&written(&PlanJson, &plan))?;
@@ -74,13 +87,53 @@ pub(super) fn run(
                 plan.formula
             )
         };
-        output.text(&format!(
-            "{head}{chosen}{}{}",
+        output.report(&format!(
+            "{head}{chosen}{}{details}{}",
             written(&PlanText, &plan),
             closing(arguments, &plan, table, &scenario)
         ))?;
     }
+    if output.is_verbose() {
+        output.aside(&clock.to_string());
+    }
     Ok(exit(&plan))
+}
+
+/// How long the stages of the work took.
+struct Stages {
+    begun: Instant,
+    took: Vec<(&'static str, f64)>,
+}
+
+impl Stages {
+    fn begin() -> Self {
+        Self { begun: Instant::now(), took: Vec::new() }
+    }
+
+    fn done(&mut self, stage: &'static str) {
+        self.took.push((stage, self.begun.elapsed().as_secs_f64()));
+        self.begun = Instant::now();
+    }
+}
+
+impl std::fmt::Display for Stages {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let stages: Vec<String> =
+            self.took.iter().map(|(stage, seconds)| format!("{stage} {seconds:.3} s")).collect();
+        write!(f, "{}", stages.join(", "))
+    }
+}
+
+/// What has to be said of a plan even where nothing else is.
+fn grave(plan: &Plan) -> Vec<String> {
+    let stopped = plan.reason.iter().map(|reason| format!("stopped, {}: {reason}", plan.status.name()));
+    let crossed = plan.arms.iter().flat_map(|arm| arm.violations.iter().map(move |limit| (arm, limit)));
+    let crossed = crossed.map(|(arm, limit)| {
+        let (kind, joint) = (limit.kind.name(), &limit.joint);
+        format!("warning: {} crosses the {kind} limit of {joint} at {} s", arm.name, figure(limit.t))
+    });
+    let warnings = plan.warnings.iter().map(|warning| format!("warning: {warning}"));
+    stopped.chain(crossed).chain(warnings).collect()
 }
 
 /// Puts joint positions that were solved for into the scenario: what is written down says what was run.
@@ -135,12 +188,18 @@ fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, scenari
     let mut next = Vec::new();
     let mut written = String::new();
     match &arguments.out {
-        Some(folder) => written = format!("\nWritten to {}: {}.\n", folder.display(), NAMES.join(", ")),
+        Some(folder) => {
+            let pictures = if arguments.figures { ", and the pictures in figures" } else { "" };
+            written = format!("\nWritten to {}: {}{pictures}.\n", folder.display(), NAMES.join(", "));
+        }
         None => next.push(("--out results".to_owned(), "the trajectory as a file".to_owned())),
     }
     next.extend(suggestions(plan, table, scenario));
     let mut lines: Vec<[String; 2]> =
         next.into_iter().map(|(arguments, why)| [format!("kinstep plan{name} {arguments}"), why]).collect();
+    if let Some(folder) = arguments.out.as_ref().filter(|_| !arguments.figures) {
+        lines.push([format!("kinstep plot {}", folder.display()), "its pictures".to_owned()]);
+    }
     if arguments.scenario.is_none() {
         lines.push(["kinstep schema scenario", "every key of a scenario of your own"].map(str::to_owned));
     }

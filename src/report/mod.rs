@@ -7,6 +7,7 @@ mod formula_page;
 mod order;
 mod paper_page;
 mod plan;
+mod plan_details;
 #[cfg(feature = "cli")]
 mod plan_json;
 mod plan_text;
@@ -20,6 +21,7 @@ pub use formula_page::{FormulaPage, pareto_front};
 pub use order::OrderPage;
 pub use paper_page::paper_page;
 pub use plan::PlanFormat;
+pub use plan_details::plan_details;
 #[cfg(feature = "cli")]
 pub use plan_json::PlanJson;
 pub use plan_text::PlanText;
