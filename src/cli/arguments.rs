@@ -27,9 +27,32 @@ pub(super) struct Arguments {
     #[arg(long, global = true)]
     pub(super) json: bool,
 
+    /// Say nothing but warnings and failures; the exit code tells the rest. Documents and JSON are written as ever
+    #[arg(long, global = true, conflicts_with = "verbose")]
+    pub(super) quiet: bool,
+
+    /// Say more: what was ignored in a robot's file, what a plan asks of every joint, how long each stage took
+    #[arg(short, long, global = true)]
+    pub(super) verbose: bool,
+
+    /// Colours: on a terminal unless NO_COLOR is set, always, or never
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", hide_possible_values = true)]
+    pub(super) color: ColourChoice,
+
     /// A file with formula rows of your own, beside the built-in ones
     #[arg(long, global = true, value_name = "FILE")]
     pub(super) formulas: Option<PathBuf>,
+}
+
+/// When text is coloured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ColourChoice {
+    /// On a terminal, unless NO_COLOR is set
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
 }
 
 #[derive(Debug, Subcommand)]
@@ -81,6 +104,7 @@ run that stops with 5.")]
     #[command(after_help = "\
 Examples:
   kinstep sweep mine.toml --vary law.h=0.1,0.2,0.4 --vary sigma=0.02,0.01 --out grid.csv
+  kinstep sweep mine.toml --vary law.h=0.1,0.2,0.4 --vary sigma=0.02,0.01 --out grid.csv --plot pictures
   kinstep sweep mine.toml --vary formula=la6-wang-guo,split-ab4 --vary 'law.h=linspace(0.1, 0.6, 11)' --out rows.csv
   kinstep sweep a.toml b.toml --vary 'arm.left.q0[2]=normal(0.3, 0.05)' --samples 1000 --out scatter.json
   kinstep sweep mine.toml --vary noise.position=1e-5,1e-4 --vary 'noise.seed=linspace(1, 20, 20)' --out noise.csv
@@ -266,6 +290,10 @@ pub(super) struct SweepArguments {
     /// Number of threads; all processors unless given. The table does not depend on it
     #[arg(long)]
     pub(super) threads: Option<usize>,
+
+    /// Draw the table too, into this folder: a map, lines or histograms as SVG, their numbers beside them as CSV
+    #[arg(long, value_name = "DIR")]
+    pub(super) plot: Option<PathBuf>,
 
     /// Replace a table that is already there, and begin afresh
     #[arg(long)]
@@ -685,10 +713,6 @@ pub(super) struct RobotFile {
     /// 0. May be given again
     #[arg(long, value_name = "JOINT=VALUE")]
     pub(super) lock: Vec<String>,
-
-    /// Say, on standard error, everything that was noted in the file, ignored elements included
-    #[arg(short, long)]
-    pub(super) verbose: bool,
 }
 
 #[derive(Debug, Args)]

@@ -100,7 +100,7 @@ fn show_rows(arguments: &FormulaShow, own_rows: &[Row], output: &mut Output) -> 
         let rows: Vec<(&str, &Analysis)> = shown.iter().map(Shown::analysed).collect();
         let written = plot(path, arguments.force, &rows)?;
         if !output.wants_json() {
-            output.remark(&format!("written: {}", written.join(", ")));
+            output.aside(&format!("written: {}", written.join(", ")));
         }
     }
     let cards = shown.iter().map(|shown| with_snippets(shown.card(), shown, arguments)).collect();

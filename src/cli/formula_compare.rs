@@ -22,7 +22,7 @@ pub(super) fn run(
         let drawn: Vec<(&str, &Analysis)> = rows.iter().map(|row| (row.row().id(), row.analysis())).collect();
         let written = plot_together(path, arguments.force, &drawn)?;
         if !output.wants_json() {
-            output.remark(&format!("written: {}", written.join(", ")));
+            output.aside(&format!("written: {}", written.join(", ")));
         }
     }
     let columns = rows.iter().map(|row| Column::new(row.row().id(), row.analysis())).collect();

@@ -14,6 +14,7 @@ mod formula_schema;
 mod formula_search;
 mod order;
 mod output;
+mod paint;
 mod plan;
 mod plot;
 mod progress;
@@ -41,7 +42,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let wants_json = arguments.iter().any(|argument| argument == "--json");
     let mut output = Output::new(wants_json);
     let outcome = match Arguments::try_parse_from(&arguments) {
-        Ok(arguments) => dispatch(&arguments, &mut output),
+        Ok(arguments) => {
+            output.listen(&arguments);
+            dispatch(&arguments, &mut output)
+        }
         Err(e) if !e.use_stderr() => output.help(&e.render()).map(|()| Exit::Done),
         Err(e) => Err(Failure::usage(usage(&e))),
     };

@@ -72,11 +72,11 @@ pub(super) fn run(
         output.json(&document(&prepared))?;
     } else {
         let pages: Vec<String> = prepared.iter().map(|studied| studied.page().text()).collect();
-        output.text(&pages.join("\n"))?;
+        output.report(&pages.join("\n"))?;
         let warnings = prepared.iter().flat_map(|studied| &studied.warnings);
         warnings.for_each(|warning| output.remark(&format!("warning: {warning}")));
         if let Some(folder) = &folder {
-            output.text(&format!("\nWritten to {}.\n", folder.path().display()))?;
+            output.report(&format!("\nWritten to {}.\n", folder.path().display()))?;
         }
     }
     let exits = prepared.iter().map(Studied::exit);
@@ -172,7 +172,7 @@ fn list(output: &mut Output) -> Result<Exit, Failure> {
         for (name, source) in &problems {
             table.row([*name, source.as_str()]);
         }
-        output.text(&format!(
+        output.report(&format!(
             "{table}\nNext:\n  kinstep order kepler --formula ab4\n  kinstep order mine.toml --out study\n"
         ))?;
     }

@@ -5,7 +5,9 @@ use std::io::{self, IsTerminal, Write};
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::arguments::{Arguments, ColourChoice};
 use super::failure::{Exit, Failure};
+use super::paint::painted;
 
 /// A result that people read as text and programs as JSON.
 pub(super) trait Show: Serialize {
@@ -13,25 +15,79 @@ pub(super) trait Show: Serialize {
     fn text(&self) -> String;
 }
 
+/// How much is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Loudness {
+    /// Warnings and failures.
+    Quiet,
+    Usual,
+    /// Details too.
+    Verbose,
+}
+
 /// Standard output and standard error, in the form that was asked for.
 pub(super) struct Output {
     wants_json: bool,
     closed: bool,
+    loudness: Loudness,
+    colour: ColourChoice,
 }
 
 impl Output {
     pub(super) fn new(wants_json: bool) -> Self {
-        Self { wants_json, closed: false }
+        Self { wants_json, closed: false, loudness: Loudness::Usual, colour: ColourChoice::Auto }
+    }
+
+    /// Takes over what the arguments say of the output itself.
+    pub(super) fn listen(&mut self, arguments: &Arguments) {
+        self.loudness = match (arguments.quiet, arguments.verbose) {
+            (true, _) => Loudness::Quiet,
+            (_, true) => Loudness::Verbose,
+            _ => Loudness::Usual,
+        };
+        self.colour = arguments.color;
     }
 
     pub(super) fn wants_json(&self) -> bool {
         self.wants_json
     }
 
+    pub(super) fn is_quiet(&self) -> bool {
+        self.loudness == Loudness::Quiet && !self.wants_json
+    }
+
+    pub(super) fn is_verbose(&self) -> bool {
+        self.loudness == Loudness::Verbose
+    }
+
+    /// Writes a report to standard output, with its verdicts in colour on a terminal; nothing where it was asked to be quiet.
+    pub(super) fn report(&mut self, text: &str) -> Result<(), Failure> {
+        if self.is_quiet() {
+            return Ok(());
+        }
+        if self.paints(io::stdout().is_terminal()) { self.text(&painted(text)) } else { self.text(text) }
+    }
+
+    /// Writes a sentence that is neither a warning nor a failure to standard error, unless it was asked to be quiet.
+    pub(super) fn aside(&self, sentence: &str) {
+        if self.loudness != Loudness::Quiet {
+            self.remark(sentence);
+        }
+    }
+
+    /// Whether text may be coloured that goes to a terminal or not.
+    fn paints(&self, to_terminal: bool) -> bool {
+        match self.colour {
+            ColourChoice::Auto => to_terminal && !is_colourless(),
+            ColourChoice::Always => true,
+            ColourChoice::Never => false,
+        }
+    }
+
     /// Writes a result in the form that was asked for.
     pub(super) fn show(&mut self, result: &impl Show) -> Result<(), Failure> {
         if !self.wants_json {
-            return self.text(&result.text());
+            return self.report(&result.text());
         }
         let document = serde_json::to_string_pretty(result)
             .map_err(|e| Failure::new(Exit::File, format!("the result can not be written as JSON: {e}")))?;
@@ -40,7 +96,7 @@ impl Output {
 
     /// Writes help, in the parser's style where standard output is a terminal.
     pub(super) fn help(&mut self, help: &clap::builder::StyledStr) -> Result<(), Failure> {
-        let painted = !is_colourless() && io::stdout().is_terminal();
+        let painted = self.paints(io::stdout().is_terminal());
         self.text(&if painted { help.ansi().to_string() } else { help.to_string() })
     }
 
@@ -78,7 +134,7 @@ impl Output {
             }
         } else {
             for failure in std::iter::once(failure).chain(&failure.also) {
-                self.remark(&failure_text(failure, paints_errors()));
+                self.remark(&failure_text(failure, self.paints(io::stderr().is_terminal())));
             }
         }
         exit
@@ -135,11 +191,6 @@ fn excerpt(line: &str, column: usize) -> (String, usize) {
     let start = if plain.len() <= WIDTH { 0 } else { caret.saturating_sub(WIDTH / 2) };
     let end = (start + WIDTH).min(plain.len());
     (plain[start..end].iter().collect(), caret - start)
-}
-
-/// Whether sentences on standard error may be coloured.
-fn paints_errors() -> bool {
-    !is_colourless() && io::stderr().is_terminal()
 }
 
 fn is_colourless() -> bool {

@@ -1,6 +1,7 @@
 //! `kinstep plan`: a scenario run, its trajectories written, and what to try next.
 
 use std::path::Path;
+use std::time::Instant;
 
 use super::arguments::PictureFormat;
 use super::arguments::PlanArguments;
@@ -9,9 +10,10 @@ use super::output::Output;
 use super::plot;
 use super::progress::Progress;
 use crate::formula::FormulaTable;
+use crate::math::figure;
 use crate::planner::{Plan, PlanStatus, Planner};
 use crate::report::figure::plan_figures;
-use crate::report::{PlanFormat, PlanJson, PlanPage, PlanText, Suggestion, suggestions};
+use crate::report::{PlanFormat, PlanJson, PlanPage, PlanText, Suggestion, plan_details, suggestions};
 use crate::scenario::{FormulaRows, Real, Scenario, ScenarioText};
 use crate::trajectory::{About, Csv, Recording, Trajectory, TrajectoryFormat};
 
@@ -31,6 +33,7 @@ pub(super) fn run(
     own: Option<&Path>,
     output: &mut Output,
 ) -> Result<Exit, Failure> {
+    let mut clock = Stages::begin();
     let text = scenario_text(arguments)?;
     let mut scenario = text.scenario()?;
     let rows = formula_rows(&text, &scenario, own)?;
@@ -39,11 +42,18 @@ pub(super) fn run(
     let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
     keep_starts(&mut scenario, &planner);
     let folder = arguments.written.folder(&names(arguments))?;
+    clock.done("reading");
     let mut plan = run_planner(planner);
+    clock.done("planning");
     plan.warnings.extend(rows.warnings());
     let names_formula = scenario.formula.is_some();
     // What is written down says what was run, whatever the default becomes later.
     scenario.formula.get_or_insert_with(|| plan.formula.clone());
+    let details = if output.is_verbose() && !output.wants_json() {
+        plan_details(&plan, &scenario.stage(text.folder()).map_err(|e| text.placed(e))?)
+    } else {
+        String::new()
+    };
     if let Some(folder) = &folder {
         let stage = scenario.stage(text.folder()).map_err(|e| text.placed(e))?;
         let again = scenario.relocated(text.folder(), own, folder.path())?.to_toml();
@@ -74,6 +84,10 @@ pub(super) fn run(
             folder.write(PAGE, |out| page.write(out))?;
         }
     }
+    clock.done("writing");
+    if output.is_quiet() {
+        grave(&plan).iter().for_each(|sentence| output.remark(sentence));
+    }
     if output.wants_json() {
         output.text(&written(&PlanJson, &plan))?;
     } else {
@@ -90,11 +104,14 @@ pub(super) fn run(
                 plan.formula
             )
         };
-        output.text(&format!(
-            "{head}{chosen}{}{}",
+        output.report(&format!(
+            "{head}{chosen}{}{details}{}",
             written(&PlanText, &plan),
             closing(arguments, &plan, table, &scenario)
         ))?;
+    }
+    if output.is_verbose() {
+        output.aside(&clock.to_string());
     }
     Ok(exit(&plan))
 }
@@ -109,6 +126,43 @@ fn names(arguments: &PlanArguments) -> Vec<&'static str> {
 fn title(arguments: &PlanArguments) -> String {
     let name = arguments.scenario.as_ref().and_then(|file| file.file_stem());
     name.map_or_else(|| "The built-in scenario".to_owned(), |name| name.to_string_lossy().into_owned())
+}
+
+/// How long the stages of the work took.
+struct Stages {
+    begun: Instant,
+    took: Vec<(&'static str, f64)>,
+}
+
+impl Stages {
+    fn begin() -> Self {
+        Self { begun: Instant::now(), took: Vec::new() }
+    }
+
+    fn done(&mut self, stage: &'static str) {
+        self.took.push((stage, self.begun.elapsed().as_secs_f64()));
+        self.begun = Instant::now();
+    }
+}
+
+impl std::fmt::Display for Stages {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let stages: Vec<String> =
+            self.took.iter().map(|(stage, seconds)| format!("{stage} {seconds:.3} s")).collect();
+        write!(f, "{}", stages.join(", "))
+    }
+}
+
+/// What has to be said of a plan even where nothing else is.
+fn grave(plan: &Plan) -> Vec<String> {
+    let stopped = plan.reason.iter().map(|reason| format!("stopped, {}: {reason}", plan.status.name()));
+    let crossed = plan.arms.iter().flat_map(|arm| arm.violations.iter().map(move |limit| (arm, limit)));
+    let crossed = crossed.map(|(arm, limit)| {
+        let (kind, joint) = (limit.kind.name(), &limit.joint);
+        format!("warning: {} crosses the {kind} limit of {joint} at {} s", arm.name, figure(limit.t))
+    });
+    let warnings = plan.warnings.iter().map(|warning| format!("warning: {warning}"));
+    stopped.chain(crossed).chain(warnings).collect()
 }
 
 /// Puts joint positions that were solved for into the scenario: what is written down says what was run.
@@ -164,15 +218,20 @@ fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, scenari
     let mut written = String::new();
     match &arguments.written.out {
         Some(folder) => {
-            written = format!("\nWritten to {}: {}.\n", folder.display(), names(arguments).join(", "))
+            let pictures = if arguments.figures { ", and the pictures in figures" } else { "" };
+            written =
+                format!("\nWritten to {}: {}{pictures}.\n", folder.display(), names(arguments).join(", "));
         }
         None => {
-            next.push(Suggestion::new("--out results", "the trajectory as a file, and a page to look at"))
+            next.push(Suggestion::new("--out results", "the trajectory as a file, and a page to look at"));
         }
     }
     next.extend(suggestions(plan, table, scenario));
     let line = |next: Suggestion| [format!("kinstep plan{name} {}", next.arguments), next.reason];
     let mut lines: Vec<[String; 2]> = next.into_iter().map(line).collect();
+    if let Some(folder) = arguments.written.out.as_ref().filter(|_| !arguments.figures) {
+        lines.push([format!("kinstep plot {}", folder.display()), "its pictures".to_owned()]);
+    }
     if arguments.scenario.is_none() {
         lines.push(["kinstep schema scenario", "every key of a scenario of your own"].map(str::to_owned));
     }

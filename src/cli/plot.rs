@@ -290,7 +290,7 @@ fn of_order(file: &Path) -> Result<Figure, Failure> {
     Ok(order_figure(&stem, &title, &sigmas, &rows))
 }
 
-fn of_sweep(file: &Path) -> Result<Vec<Figure>, Failure> {
+pub(super) fn of_sweep(file: &Path) -> Result<Vec<Figure>, Failure> {
     let text = read_text(file)?;
     let table = SweepTable::parse(&text).map_err(|problem| {
         let message = format!("{} is not what kinstep sweep --out has saved: {problem}", file.display());

@@ -196,7 +196,7 @@ fn write_page(page: &Path, force: bool, output: &mut Output) -> Result<Exit, Fai
     if output.wants_json() {
         output.json(&serde_json::json!({ "page": file }))?;
     } else {
-        output.text(&format!("Written to {file}.\n"))?;
+        output.report(&format!("Written to {file}.\n"))?;
     }
     Ok(Exit::Done)
 }

@@ -35,7 +35,7 @@ fn options(file: &RobotFile) -> UrdfOptions {
 pub(super) fn read(file: &RobotFile, output: &Output) -> Result<Robot, Failure> {
     let source = RobotSource::find(&file.robot, None)?;
     let robot = source.read(&options(file)).map_err(|e| source.refusal(&e))?;
-    if file.verbose {
+    if output.is_verbose() {
         robot.diagnostics().iter().for_each(|found| output.remark(&format!("{}:{found}", source.label())));
     }
     edited(robot, file)
@@ -77,7 +77,7 @@ fn show(arguments: &RobotShow, output: &mut Output) -> Result<Exit, Failure> {
     if output.wants_json() {
         output.json(&serde_json::json!({ "written": written }))?;
     } else {
-        output.text(&format!("wrote {}\n", written.join(", ")))?;
+        output.report(&format!("wrote {}\n", written.join(", ")))?;
     }
     Ok(Exit::Done)
 }
@@ -200,6 +200,10 @@ fn check(file: &RobotFile, output: &mut Output) -> Result<Exit, Failure> {
     };
     let ok = found.iter().all(|problem| problem.severity != Severity::Error);
     let problems = found.iter().map(Problem::from).collect();
+    if output.is_quiet() {
+        let grave = found.iter().filter(|problem| problem.severity != Severity::Note);
+        grave.for_each(|problem| output.remark(&format!("{}:{problem}", source.label())));
+    }
     output.show(&CheckResult { ok, problems, joints, links, label: source.label() })?;
     Ok(if ok { Exit::Done } else { Exit::Robot })
 }

@@ -19,7 +19,7 @@ pub(super) fn run(arguments: &RobotExport, output: &mut Output) -> Result<Exit, 
             if output.wants_json() {
                 output.json(&serde_json::json!({ "written": path.display().to_string() }))?;
             } else {
-                output.remark(&format!("wrote {}", path.display()));
+                output.aside(&format!("wrote {}", path.display()));
             }
         }
         _ if output.wants_json() => output.json(&serde_json::json!({ "urdf": text }))?,

@@ -8,21 +8,25 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::arguments::SweepArguments;
+use super::arguments::{PictureFormat, SweepArguments};
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
+use super::plot;
 use super::progress::Progress;
 use crate::report::{WriteError, write_whole};
 use crate::scenario::{FormulaRows, ScenarioText};
 use crate::study::sweep::{self, Axis, Sweep, SweepError, Swept, Table};
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 struct Summary {
     out: String,
     cases: usize,
     done: usize,
     resumed: usize,
     statuses: std::collections::BTreeMap<String, usize>,
+    /// The pictures that were written.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    drawn: Vec<String>,
 }
 
 impl Show for Summary {
@@ -38,6 +42,10 @@ impl Show for Summary {
         }
         if self.done == self.cases {
             let _ = writeln!(text, "Written to {}.", self.out);
+            self.drawn.iter().for_each(|file| _ = writeln!(text, "  {file}"));
+            if self.drawn.is_empty() {
+                let _ = writeln!(text, "\nNext:\n  kinstep plot {}  # the table as pictures", self.out);
+            }
         } else {
             text.push_str("Interrupted; the same command goes on from here.\n");
         }
@@ -71,14 +79,26 @@ pub(super) fn run(
     let swept = swept.map_err(|e| refused(&e))?;
     drop(progress);
     let (summary, exit) = finish(swept, arguments)?;
-    output.show(&summary)?;
+    let drawn = draw(arguments, &summary)?;
+    output.show(&Summary { drawn, ..summary.clone() })?;
     let seconds = started.elapsed().as_secs_f64();
     let speed = (summary.done - summary.resumed) as f64 / seconds.max(1e-9);
-    output.remark(&format!(
+    output.aside(&format!(
         "{seconds:.1} s, {speed:.0} cases a second on {} threads",
         threads.current_num_threads()
     ));
     Ok(exit)
+}
+
+/// Draws the table that was written, if that was asked for and it is whole; returns the files.
+fn draw(arguments: &SweepArguments, summary: &Summary) -> Result<Vec<String>, Failure> {
+    match &arguments.plot {
+        Some(folder) if summary.done == summary.cases => {
+            let figures = plot::of_sweep(&arguments.out)?;
+            plot::write(folder, arguments.force, &figures, &[PictureFormat::Svg])
+        }
+        _ => Ok(Vec::new()),
+    }
 }
 
 /// Writes the table, if it is whole.
@@ -94,6 +114,7 @@ fn finish(mut swept: Swept<'_>, arguments: &SweepArguments) -> Result<(Summary, 
         done: progress.done,
         resumed: progress.resumed,
         statuses: progress.statuses.iter().cloned().collect(),
+        drawn: Vec::new(),
     };
     if !progress.is_whole() {
         return Ok((summary, Exit::Stopped));

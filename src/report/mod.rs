@@ -10,6 +10,7 @@ mod order;
 mod page;
 mod paper_page;
 mod plan;
+mod plan_details;
 #[cfg(feature = "cli")]
 mod plan_json;
 mod plan_text;
@@ -26,6 +27,7 @@ pub use order::OrderPage;
 pub use page::PlanPage;
 pub use paper_page::paper_page;
 pub use plan::PlanFormat;
+pub use plan_details::plan_details;
 #[cfg(feature = "cli")]
 pub use plan_json::PlanJson;
 pub use plan_text::PlanText;
