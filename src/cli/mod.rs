@@ -1,8 +1,11 @@
 //! The command line: arguments in, a document out, an exit code for scripts.
 
 mod arguments;
+mod check;
+mod export;
 mod failure;
 mod folder;
+mod formats;
 mod formula;
 mod formula_barrier;
 mod formula_card;
@@ -66,6 +69,8 @@ fn dispatch(arguments: &Arguments, output: &mut Output) -> Result<Exit, Failure>
         Command::Reproduce(command) => reproduce::run(command, output),
         Command::Formula(command) => formula::run(command, own, output),
         Command::Robot(command) => robot::run(command, output),
+        Command::Export(command) => export::run(command, output),
+        Command::Check(command) => check::run(command, output),
         Command::Sweep(command) => sweep::run(command, own, output),
         Command::Schema(command) => schema::run(*command, output),
     }

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::arguments::PlanArguments;
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
+use super::formats::{self, Exports};
 use super::output::Output;
 use super::progress::Progress;
 use crate::formula::{Formula, FormulaTable};
@@ -12,13 +13,50 @@ use crate::math::figure;
 use crate::planner::{LimitKind, Plan, PlanStatus, Planner};
 use crate::report::{PlanFormat, PlanJson, PlanText};
 use crate::scenario::{FormulaRows, Real, Scenario, ScenarioText};
-use crate::trajectory::{About, Csv, Recording, Trajectory, TrajectoryFormat};
+use crate::trajectory::{About, Export, Recording, Stage, Trajectory};
 
 /// The scenario that runs without a file.
 const BUILTIN: &str = include_str!("../../examples/dual_panda.toml");
 
-/// The files of `--out`.
-const NAMES: [&str; 3] = ["trajectory.csv", "plan.json", "scenario.toml"];
+/// The files of `--out` beside the trajectory.
+const NAMES: [&str; 2] = ["plan.json", "scenario.toml"];
+
+/// The folder of results with the stage, and what is written there; all of it known before anything is computed.
+struct Results {
+    folder: Folder,
+    stage: Stage,
+    exports: Exports,
+}
+
+impl Results {
+    fn open(
+        path: &Path,
+        arguments: &PlanArguments,
+        scenario: &Scenario,
+        text: &ScenarioText,
+    ) -> Result<Self, Failure> {
+        let chosen = formats::formats(&arguments.format, &[Export::Csv])?;
+        let stage = scenario.stage(text.folder()).map_err(|e| text.placed(e))?;
+        let exports = Exports::new(&chosen, &formats::machines(&stage), arguments.append_stop)?;
+        let names: Vec<&str> = exports.names().chain(NAMES).collect();
+        let folder = Folder::open(path, arguments.force, &names)?;
+        Ok(Self { folder, stage, exports })
+    }
+
+    /// Writes what was planned. Of a run that stopped all is written that can be, with the reasons for what can not.
+    fn write(mut self, plan: &mut Plan, again: &str) -> Result<Vec<String>, Failure> {
+        let folder = self.folder.interruptible(formats::interruption());
+        let trajectory = Trajectory::of(plan, Some(About::of(plan, again, &self.stage)));
+        let recording = Recording { trajectory: &trajectory, stage: &self.stage };
+        if !plan.is_completed() {
+            plan.warnings.extend(self.exports.keep_possible(recording));
+        }
+        self.exports.write(&folder, recording)?;
+        folder.write("plan.json", |out| PlanJson.write(plan, out))?;
+        folder.write("scenario.toml", |out| out.write_all(again.as_bytes()))?;
+        Ok(self.exports.names().chain(NAMES).map(str::to_owned).collect())
+    }
+}
 
 pub(super) fn run(
     arguments: &PlanArguments,
@@ -32,21 +70,17 @@ pub(super) fn run(
     let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
     let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
     keep_starts(&mut scenario, &planner);
-    let folder =
-        arguments.out.as_deref().map(|path| Folder::open(path, arguments.force, &NAMES)).transpose()?;
+    let open = |path: &Path| Results::open(path, arguments, &scenario, &text);
+    let results = arguments.out.as_deref().map(open).transpose()?;
     let mut plan = run_planner(planner);
     plan.warnings.extend(rows.warnings());
     let names_formula = scenario.formula.is_some();
     // What is written down says what was run, whatever the default becomes later.
     scenario.formula.get_or_insert_with(|| plan.formula.clone());
-    if let Some(folder) = &folder {
-        let stage = scenario.stage(text.folder()).map_err(|e| text.placed(e))?;
-        let again = scenario.relocated(text.folder(), own, folder.path())?.to_toml();
-        let trajectory = Trajectory::of(&plan, Some(About::of(&plan, &again, &stage)));
-        let recording = Recording { trajectory: &trajectory, stage: &stage };
-        folder.write("trajectory.csv", |out| Csv.write(recording, out))?;
-        folder.write("plan.json", |out| PlanJson.write(&plan, out))?;
-        folder.write("scenario.toml", |out| out.write_all(again.as_bytes()))?;
+    let mut names = Vec::new();
+    if let Some(results) = results {
+        let again = scenario.relocated(text.folder(), own, results.folder.path())?.to_toml();
+        names = results.write(&mut plan, &again)?;
     }
     if output.wants_json() {
         output.text(&written(&PlanJson, &plan))?;
@@ -67,7 +101,7 @@ pub(super) fn run(
         output.text(&format!(
             "{head}{chosen}{}{}",
             written(&PlanText, &plan),
-            closing(arguments, &plan, table, &scenario)
+            closing(arguments, &names, &plan, table, &scenario)
         ))?;
     }
     Ok(exit(&plan))
@@ -120,12 +154,18 @@ fn exit(plan: &Plan) -> Exit {
 }
 
 /// Where the files are, and what to try next.
-fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, scenario: &Scenario) -> String {
+fn closing(
+    arguments: &PlanArguments,
+    names: &[String],
+    plan: &Plan,
+    table: &FormulaTable,
+    scenario: &Scenario,
+) -> String {
     let name = arguments.scenario.as_ref().map_or_else(String::new, |file| format!(" {}", file.display()));
     let mut next = Vec::new();
     let mut written = String::new();
     match &arguments.out {
-        Some(folder) => written = format!("\nWritten to {}: {}.\n", folder.display(), NAMES.join(", ")),
+        Some(folder) => written = format!("\nWritten to {}: {}.\n", folder.display(), names.join(", ")),
         None => next.push(("--out results".to_owned(), "the trajectory as a file".to_owned())),
     }
     next.extend(suggestions(plan, table, scenario));
