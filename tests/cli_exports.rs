@@ -151,3 +151,30 @@ fn what_can_not_be_written_is_exit_6_and_leaves_nothing() {
     desk.run(&["export", "o", "--format", "npz"]).expect(6);
     assert_eq!(desk.names("o").len(), 3);
 }
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_no_file_that_is_not_whole() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    let arguments = ["plan", "s.toml", "--set", "sigma=1e-5", "--out", "o", "--format", "all"];
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("kinstep"))
+        .current_dir(desk.path("."))
+        .args(arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begin = Instant::now();
+    while !desk.names("o").iter().any(|name| name.contains(".part")) {
+        assert!(begin.elapsed() < Duration::from_mins(2), "nothing is written");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let mut sentence = String::new();
+    std::io::Read::read_to_string(&mut child.stderr.take().unwrap(), &mut sentence).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(6), "{sentence}");
+    assert!(sentence.contains("trajectory.csv can not be written: it was interrupted"), "{sentence}");
+    assert_eq!(desk.names("o"), Vec::<String>::new());
+}

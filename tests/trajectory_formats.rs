@@ -31,14 +31,13 @@ fn read(name: &str, bytes: &[u8]) -> Trajectory {
     Trajectory::from_bytes(name.as_ref(), bytes).unwrap()
 }
 
-/// What messages hold of a trajectory: times since the first in nanoseconds, names of topics, no task errors, an end at rest.
+/// What messages hold of a trajectory: times since the first in nanoseconds, no task errors, an end at rest.
 fn as_messages(trajectory: &Trajectory) -> Trajectory {
     let mut messages = trajectory.clone();
     let first = trajectory.times[0];
     messages.times.iter_mut().for_each(|time| *time = ((*time - first) * 1e9).round() / 1e9);
     for arm in &mut messages.arms {
         arm.errors.clear();
-        arm.name = arm.name.replace('-', "_");
     }
     // Keys of a map have an order of their own.
     messages.about.iter_mut().for_each(|about| about.robots.sort());
@@ -75,7 +74,6 @@ proptest! {
         for arm in &trajectory.arms {
             let alone = Trajectory { arms: vec![ArmTrajectory { errors: Vec::new(), ..arm.clone() }], ..trajectory.clone() };
             let mut alone = as_messages(&alone);
-            alone.arms[0].name.clone_from(&arm.name);
             alone.about.clone_from(&trajectory.about);
             for format in [
                 &Ros2Yaml { machine: arm.name.clone() } as &dyn TrajectoryFormat,

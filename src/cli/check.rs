@@ -1,5 +1,6 @@
 //! `kinstep check`: a trajectory of whatever planner, held against a robot, itself and the path it should follow.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use serde::Serialize;
@@ -201,7 +202,7 @@ fn ordered(arm: &ArmTrajectory, path: &Arm) -> Result<ArmTrajectory, Failure> {
         return Ok(ordered);
     }
     for joint in &arm.joints {
-        export::check_joint(joint, order.iter().copied(), &format!("arm `{}` of the scenario", path.name()))?;
+        export::check_joint(joint, &order, &format!("arm `{}` of the scenario", path.name()))?;
     }
     let missing = order.iter().find(|name| !arm.joints.iter().any(|own| own == *name));
     let missing = missing.copied().unwrap_or_default();
@@ -217,7 +218,7 @@ fn limits_of(arm: &ArmTrajectory, robot: &Robot, name: &str) -> Result<Vec<Limit
     arm.joints
         .iter()
         .map(|joint| {
-            export::check_joint(joint, known.iter().copied(), name)?;
+            export::check_joint(joint, &known, name)?;
             Ok(robot.joint(joint).map_or(Limits::UNLIMITED, |joint| joint.limits))
         })
         .collect()
@@ -327,16 +328,19 @@ impl Show for Checked {
             }
         }
         text.push_str(&table.to_string());
+        // Writing to a String can not fail.
         for arm in &self.arms {
             if let (Some(error), Some(t)) = (arm.max_error, arm.max_error_at) {
-                text.push_str(&format!("{}: worst task error {} at t = {t} s\n", arm.name, short(error)));
+                let _ = writeln!(text, "{}: worst task error {} at t = {t} s", arm.name, short(error));
             }
         }
         match self.failures.as_slice() {
             [] => text.push_str("\nevery check holds\n"),
             failures => {
                 text.push('\n');
-                failures.iter().for_each(|failure| text.push_str(&format!("FAILED  {failure}\n")));
+                for failure in failures {
+                    let _ = writeln!(text, "FAILED  {failure}");
+                }
             }
         }
         text

@@ -78,7 +78,8 @@ fn staged(trajectory: &Trajectory, robot: &TrajectoryRobot) -> Result<Stage, Fai
     let read = source.read(&UrdfOptions::default()).map_err(|e| source.refusal(&e))?;
     let refuse = |message: String| Failure::new(Exit::Robot, message).in_file(reference);
     let chain = read.chain(base, tip).map_err(|e| refuse(e.to_string()))?;
-    check_joints(arm, chain.joints().iter().map(|joint| joint.name.as_str()), reference)?;
+    let names: Vec<&str> = chain.joints().iter().map(|joint| joint.name.as_str()).collect();
+    check_joints(arm, &names, reference)?;
     let machine = Machine {
         urdf: source.urdf(),
         folder: source.folder(),
@@ -90,15 +91,9 @@ fn staged(trajectory: &Trajectory, robot: &TrajectoryRobot) -> Result<Stage, Fai
 }
 
 /// Refuses a trajectory that moves other joints than a chain has.
-fn check_joints<'j>(
-    arm: &ArmTrajectory,
-    chain: impl Iterator<Item = &'j str> + Clone,
-    robot: &str,
-) -> Result<(), Failure> {
-    for joint in &arm.joints {
-        check_joint(joint, chain.clone(), robot)?;
-    }
-    match chain.clone().find(|name| !arm.joints.iter().any(|own| own == name)) {
+fn check_joints(arm: &ArmTrajectory, chain: &[&str], robot: &str) -> Result<(), Failure> {
+    arm.joints.iter().try_for_each(|joint| check_joint(joint, chain, robot))?;
+    match chain.iter().find(|name| !arm.joints.iter().any(|own| own == *name)) {
         Some(missing) => {
             let message = format!("the trajectory does not have joint `{missing}` of the chain");
             Err(Failure::new(Exit::Robot, message).in_file(robot))
@@ -108,15 +103,11 @@ fn check_joints<'j>(
 }
 
 /// Refuses a joint that is not among the known ones, with the nearest of them.
-pub(super) fn check_joint<'j>(
-    joint: &str,
-    known: impl Iterator<Item = &'j str> + Clone,
-    robot: &str,
-) -> Result<(), Failure> {
-    if known.clone().any(|name| name == joint) {
+pub(super) fn check_joint(joint: &str, known: &[&str], robot: &str) -> Result<(), Failure> {
+    if known.contains(&joint) {
         return Ok(());
     }
-    let hint = suggestion(joint, known);
+    let hint = suggestion(joint, known.iter().copied());
     let message =
         format!("the trajectory moves `{joint}`, which is no joint of {robot} that it could; {hint}");
     Err(Failure::new(Exit::Robot, message).in_file(robot))

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
-use mcap::{McapError, MessageStream, WriteOptions, Writer};
+use mcap::{McapError, WriteOptions, Writer};
 use nalgebra::{IsometryMatrix3, UnitQuaternion};
 
 use super::cdr::{Cdr, CdrReader};
@@ -13,6 +13,7 @@ use super::clock::Stamp;
 use super::controller::{Refusal, check_messages};
 use super::error::Problem;
 use super::group::{Group, ros_name};
+use super::mcap_records::{Channel, Contents, MAGIC};
 use super::read::{Source, TrajectoryReader};
 use super::ros2_schema::schema;
 use super::ros2_yaml::start_of;
@@ -22,6 +23,8 @@ use super::{About, ArmTrajectory, Machine, Recording, Trajectory, TrajectoryForm
 const WORLD: &str = "world";
 /// The name of the record that says what made the trajectory.
 const ABOUT: &str = "kinstep";
+/// The entry of a channel's metadata that has the machine's name as it is.
+const MACHINE: &str = "kinstep.machine";
 /// The most poses of a path that is drawn.
 const LONGEST_PATH: usize = 10_000;
 /// The quality of service of topics that late listeners get too: reliable, with the last message kept.
@@ -97,6 +100,8 @@ struct Moving<'a> {
     group: &'a Group<'a>,
     names: Names,
     states: u16,
+    /// The joints of the machine that are not among those of the group, and where they rest.
+    resting: Vec<(&'a str, f64)>,
     transforms: Option<Frames<'a>>,
 }
 
@@ -120,10 +125,11 @@ impl<W: Write> Bag<W> {
         let mut moving = Vec::new();
         for group in &groups {
             let names = Names::of(group, groups.len() == 1);
-            let states =
-                self.channel(&format!("{}joint_states", names.topics), "sensor_msgs/JointState", false)?;
+            let topic = format!("{}joint_states", names.topics);
+            let states = self.channel_of(Some(group.name), &topic, "sensor_msgs/JointState", false)?;
+            let resting = start_of(group).split_off(group.columns.len());
             let transforms = group.machine.map(|machine| Frames::of(machine, group));
-            moving.push(Moving { group, names, states, transforms });
+            moving.push(Moving { group, names, states, resting, transforms });
         }
         self.describe(&mut moving)?;
         for Moving { group, names, .. } in &moving {
@@ -145,10 +151,21 @@ impl<W: Write> Bag<W> {
     }
 
     fn channel(&mut self, topic: &str, message: &str, is_latched: bool) -> Result<u16, McapError> {
+        self.channel_of(None, topic, message, is_latched)
+    }
+
+    fn channel_of(
+        &mut self,
+        machine: Option<&str>,
+        topic: &str,
+        message: &str,
+        is_latched: bool,
+    ) -> Result<u16, McapError> {
         let name = message.replacen('/', "/msg/", 1);
         let schema = self.writer.add_schema(&name, "ros2msg", schema(message).as_bytes())?;
         let quality = is_latched.then(|| ("offered_qos_profiles".to_owned(), LATCHED.to_owned()));
-        self.writer.add_channel(schema, topic, "cdr", &quality.into_iter().collect())
+        let machine = machine.map(|machine| (MACHINE.to_owned(), machine.to_owned()));
+        self.writer.add_channel(schema, topic, "cdr", &quality.into_iter().chain(machine).collect())
     }
 
     /// Writes the message that was put together.
@@ -208,16 +225,18 @@ impl<W: Write> Bag<W> {
     }
 
     fn states(&mut self, machine: &Moving<'_>, sample: usize, stamp: Stamp) -> Result<(), McapError> {
-        let Moving { group, states, .. } = machine;
-        let all = start_of(group);
-        let resting = all[group.columns.len()..].iter();
+        let Moving { group, states, resting, .. } = machine;
+        let count = group.columns.len() + resting.len();
         self.cdr.header(stamp, "");
-        self.cdr.texts(all.iter().map(|(name, _)| *name));
-        self.cdr.count(all.len());
-        self.cdr.reals(group.positions(sample).chain(resting.clone().map(|&(_, position)| position)));
+        self.cdr.count(count);
+        let names =
+            group.columns.iter().map(|column| column.joint).chain(resting.iter().map(|(name, _)| *name));
+        names.for_each(|name| self.cdr.text(name));
+        self.cdr.count(count);
+        self.cdr.reals(group.positions(sample).chain(resting.iter().map(|&(_, position)| position)));
         if group.has_velocities() {
-            self.cdr.count(all.len());
-            self.cdr.reals(group.velocities(sample).chain(resting.map(|_| 0.0)));
+            self.cdr.count(count);
+            self.cdr.reals(group.velocities(sample).chain(resting.iter().map(|_| 0.0)));
         } else {
             self.cdr.count(0);
         }
@@ -232,7 +251,7 @@ impl<W: Write> Bag<W> {
         names: &Names,
     ) -> Result<(), McapError> {
         let topic = format!("{}joint_trajectory", names.topics);
-        let channel = self.channel(&topic, "trajectory_msgs/JointTrajectory", true)?;
+        let channel = self.channel_of(Some(group.name), &topic, "trajectory_msgs/JointTrajectory", true)?;
         self.joint_trajectory(trajectory, group);
         self.send(channel, Stamp::ZERO)?;
         let topic = format!("{}display_planned_path", names.topics);
@@ -349,42 +368,50 @@ impl<'a> Frames<'a> {
 
 impl TrajectoryReader for Mcap {
     fn knows(&self, source: Source<'_>) -> bool {
-        source.bytes.starts_with(mcap::MAGIC) || source.has_extension(&["mcap"])
+        source.bytes.starts_with(MAGIC) || source.has_extension(&["mcap"])
     }
 
     fn read(&self, source: Source<'_>) -> Result<Trajectory, Problem> {
-        let bad = |e: &McapError| Problem::new(format!("this MCAP file can not be read: {e}"));
-        let mut commands: BTreeMap<String, (Vec<f64>, ArmTrajectory)> = BTreeMap::new();
-        let mut states: BTreeMap<String, (Vec<f64>, ArmTrajectory)> = BTreeMap::new();
-        for message in MessageStream::new(source.bytes).map_err(|e| bad(&e))? {
-            let message = message.map_err(|e| bad(&e))?;
-            let topic = &message.channel.topic;
-            match message.channel.schema.as_ref().map(|schema| schema.name.as_str()) {
-                Some("trajectory_msgs/msg/JointTrajectory") if !commands.contains_key(topic) => {
-                    commands.insert(topic.clone(), command(topic, &message.data)?);
+        let (mut commands, mut states): (Vec<Series>, Vec<Series>) = (Vec::new(), Vec::new());
+        let contents =
+            Contents::read(source.bytes, &mut |channel, time, message| match channel.message.as_str() {
+                "trajectory_msgs/msg/JointTrajectory"
+                    if !commands.iter().any(|known| known.topic == channel.topic) =>
+                {
+                    commands.push(Series::command(channel, message)?);
+                    Ok(())
                 }
-                Some("sensor_msgs/msg/JointState") => {
-                    let entry = states.entry(topic.clone());
-                    let series = entry.or_insert_with(|| (Vec::new(), ArmTrajectory::empty(arm_of(topic))));
-                    push_state(series, message.log_time, &message.data)?;
+                "sensor_msgs/msg/JointState" => {
+                    let known = states.iter().position(|known| known.topic == channel.topic);
+                    let place = known.unwrap_or(states.len());
+                    if known.is_none() {
+                        states.push(Series::of(channel));
+                    }
+                    states[place].push_state(time, message)
                 }
-                _ => {}
-            }
-        }
-        let mut found = if commands.is_empty() { states } else { commands }.into_iter();
+                _ => Ok(()),
+            })?;
+        let about = contents.metadata.get(ABOUT);
+        let about =
+            about.and_then(|about| About::from_entries(about.iter().map(|(k, v)| (k.as_str(), v.as_str()))));
+        let found = if commands.is_empty() { states } else { commands };
         let nothing = "it has neither trajectory_msgs/msg/JointTrajectory nor sensor_msgs/msg/JointState";
-        let (first, (times, arm)) = found.next().ok_or_else(|| Problem::new(nothing))?;
-        let mut arms = vec![arm];
-        for (topic, (others, arm)) in found {
-            if others != times {
-                let message =
-                    format!("{topic} and {first} have samples at different times; keep one of them");
-                return Err(Problem::new(message));
-            }
-            arms.push(arm);
+        let first = found.first().ok_or_else(|| Problem::new(nothing))?;
+        if let Some(other) = found.iter().find(|other| other.times != first.times) {
+            let (one, other) = (&first.topic, &other.topic);
+            let message = format!("{other} and {one} have samples at different times; keep one of them");
+            return Err(Problem::new(message));
         }
-        Ok(Trajectory { about: about(source.bytes), times, arms })
+        let times = first.times.clone();
+        Ok(Trajectory { about, times, arms: found.into_iter().map(|series| series.arm).collect() })
     }
+}
+
+/// The samples of one topic.
+struct Series {
+    topic: String,
+    times: Vec<f64>,
+    arm: ArmTrajectory,
 }
 
 /// The arm that a topic is about: what stands before its last word.
@@ -393,70 +420,60 @@ fn arm_of(topic: &str) -> &str {
     if space.is_empty() { "arm" } else { space }
 }
 
-fn command(topic: &str, message: &[u8]) -> Result<(Vec<f64>, ArmTrajectory), Problem> {
-    let mut cdr = CdrReader::new(message)?;
-    cdr.header()?;
-    let mut arm = ArmTrajectory { joints: cdr.texts()?, ..ArmTrajectory::empty(arm_of(topic)) };
-    let mut times = Vec::new();
-    for _ in 0..cdr.count()? {
+impl Series {
+    fn of(channel: &Channel) -> Self {
+        let topic = channel.topic.clone();
+        let name = channel.metadata.get(MACHINE).map_or(arm_of(&topic), String::as_str);
+        Self { arm: ArmTrajectory::empty(name), times: Vec::new(), topic }
+    }
+
+    fn command(channel: &Channel, message: &[u8]) -> Result<Self, Problem> {
+        let mut series = Self::of(channel);
+        let mut cdr = CdrReader::new(message)?;
+        cdr.header()?;
+        series.arm.joints = cdr.texts()?;
+        for _ in 0..cdr.count()? {
+            let (positions, velocities) = (cdr.list()?, cdr.list()?);
+            let _accelerations_and_efforts = [cdr.list()?, cdr.list()?];
+            series.times.push(cdr.stamp()?.seconds());
+            series.push(positions, velocities)?;
+        }
+        Ok(series)
+    }
+
+    fn push_state(&mut self, log_time: u64, message: &[u8]) -> Result<(), Problem> {
+        let mut cdr = CdrReader::new(message)?;
+        let stamp = cdr.header()?;
+        let joints = cdr.texts()?;
+        if self.times.is_empty() {
+            self.arm.joints = joints;
+        } else if self.arm.joints != joints {
+            return Err(Problem::new(format!("{} names other joints as time goes on", self.topic)));
+        }
+        let has_stamp = stamp != Stamp::ZERO || log_time == 0;
+        self.times.push(if has_stamp { stamp.seconds() } else { log_time as f64 / 1e9 });
         let (positions, velocities) = (cdr.list()?, cdr.list()?);
-        (cdr.list()?, cdr.list()?);
-        times.push(cdr.stamp()?.seconds());
-        push(&mut arm, times.len(), topic, positions, velocities)?;
+        self.push(positions, velocities)
     }
-    Ok((times, arm))
-}
 
-fn push_state(
-    (times, arm): &mut (Vec<f64>, ArmTrajectory),
-    log_time: u64,
-    message: &[u8],
-) -> Result<(), Problem> {
-    let mut cdr = CdrReader::new(message)?;
-    let stamp = cdr.header()?;
-    let joints = cdr.texts()?;
-    let topic = arm.name.clone();
-    if times.is_empty() {
-        arm.joints = joints;
-    } else if arm.joints != joints {
-        return Err(Problem::new(format!("joint states of `{topic}` name other joints as time goes on")));
+    /// Adds a sample, of which all have velocities or none.
+    fn push(&mut self, positions: Vec<f64>, velocities: Vec<f64>) -> Result<(), Problem> {
+        let (samples, topic, joints) = (self.times.len(), &self.topic, self.arm.joints.len());
+        if positions.len() != joints {
+            let got = positions.len();
+            return Err(Problem::new(format!(
+                "sample {samples} of {topic} has {got} positions for {joints} joints"
+            )));
+        }
+        let knows_velocities = samples == 1 || !self.arm.velocities.is_empty();
+        if velocities.len() == joints && knows_velocities {
+            self.arm.velocities.extend(velocities);
+        } else if !self.arm.velocities.is_empty() {
+            return Err(Problem::new(format!(
+                "sample {samples} of {topic} has no velocities although others have"
+            )));
+        }
+        self.arm.positions.extend(positions);
+        Ok(())
     }
-    let has_stamp = stamp != Stamp::ZERO || times.is_empty() && log_time == 0;
-    times.push(if has_stamp { stamp.seconds() } else { log_time as f64 / 1e9 });
-    let (positions, velocities) = (cdr.list()?, cdr.list()?);
-    push(arm, times.len(), &topic, positions, velocities)
-}
-
-/// Adds a sample, of which all have velocities or none.
-fn push(
-    arm: &mut ArmTrajectory,
-    samples: usize,
-    topic: &str,
-    positions: Vec<f64>,
-    velocities: Vec<f64>,
-) -> Result<(), Problem> {
-    let joints = arm.joints.len();
-    if positions.len() != joints {
-        let got = positions.len();
-        return Err(Problem::new(format!(
-            "sample {samples} of {topic} has {got} positions for {joints} joints"
-        )));
-    }
-    let knows_velocities = samples == 1 || !arm.velocities.is_empty();
-    if velocities.len() == joints && knows_velocities {
-        arm.velocities.extend(velocities);
-    } else if !arm.velocities.is_empty() {
-        return Err(Problem::new(format!(
-            "sample {samples} of {topic} has no velocities although others have"
-        )));
-    }
-    arm.positions.extend(positions);
-    Ok(())
-}
-
-fn about(bytes: &[u8]) -> Option<About> {
-    let summary = mcap::Summary::read(bytes).ok()??;
-    let index = summary.metadata_indexes.iter().find(|index| index.name == ABOUT)?;
-    let metadata = mcap::read::metadata(bytes, index).ok()?.metadata;
-    About::from_entries(metadata.iter().map(|(key, value)| (key.as_str(), value.as_str())))
 }

@@ -18,6 +18,7 @@ mod formats;
 mod group;
 mod inspect;
 mod mcap;
+mod mcap_records;
 mod npy;
 mod npz;
 mod read;

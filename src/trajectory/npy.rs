@@ -24,7 +24,7 @@ pub(super) fn write_numbers(out: &mut dyn Write, shape: &[usize], values: &[f64]
     let mut bytes = Vec::with_capacity(8 * 1024);
     for part in values.chunks(1024) {
         bytes.clear();
-        part.iter().for_each(|value| bytes.extend(value.to_le_bytes()));
+        bytes.extend(part.iter().flat_map(|value| value.to_le_bytes()));
         out.write_all(&bytes)?;
     }
     Ok(())

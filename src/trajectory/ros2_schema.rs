@@ -1,5 +1,7 @@
 //! Definitions of the messages that are written, from the public interface packages of ROS 2.
 
+use std::fmt::Write;
+
 /// Each message with its fields.
 const DEFINITIONS: &[(&str, &str)] = &[
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"),
@@ -91,7 +93,8 @@ pub(super) fn schema(name: &str) -> String {
         let inner: Vec<String> = parts(fields(&names[next])).map(str::to_owned).collect();
         for part in inner {
             if !names.contains(&part) {
-                text.push_str(&format!("{}\nMSG: {part}\n{}", "=".repeat(80), fields(&part)));
+                // Writing to a String can not fail.
+                let _ = write!(text, "{}\nMSG: {part}\n{}", "=".repeat(80), fields(&part));
                 names.push(part);
             }
         }

@@ -133,7 +133,9 @@ impl TrajectoryReader for Ros2Yaml {
         let name = comments().find_map(|line| line.strip_prefix(MACHINE)).unwrap_or("arm");
         let documents = yaml::documents(text)?;
         let mut found = Vec::new();
-        documents.iter().for_each(|document| joint_trajectories(document, &mut found));
+        for document in &documents {
+            joint_trajectories(document, &mut found);
+        }
         let [message] = found[..] else {
             let at = found.get(1).map_or(0, |node| node.at());
             let message = format!(
