@@ -16,7 +16,9 @@ fn files_that_are_there_are_replaced_only_by_force() {
     assert_eq!(std::fs::read(desk.path("o/trajectory.csv")).unwrap(), before);
     desk.run(&["plan", "s.toml", "--out", "o", "--set", "law.h=0.3", "--force"]).expect(0);
     assert_ne!(std::fs::read(desk.path("o/trajectory.csv")).unwrap(), before);
-    assert_eq!(desk.names("o"), ["plan.json", "report.html", "scenario.toml", "trajectory.csv"]);
+    let names =
+        ["plan.json", "report.html", "scenario.toml", "trajectory.csv", "trajectory.csv-metadata.json"];
+    assert_eq!(desk.names("o"), names);
 }
 
 #[test]

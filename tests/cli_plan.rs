@@ -220,7 +220,9 @@ fn a_run_that_stops_is_exit_5_and_what_was_computed_is_written() {
 fn the_trajectory_has_the_columns_and_digits_that_scripts_rely_on() {
     let desk = Desk::new(&[("s.toml", SMALL)]);
     desk.run(&["plan", "s.toml", "--out", "deep/results"]).expect(0);
-    assert_eq!(desk.names("deep/results"), ["plan.json", "report.html", "scenario.toml", "trajectory.csv"]);
+    let names =
+        ["plan.json", "report.html", "scenario.toml", "trajectory.csv", "trajectory.csv-metadata.json"];
+    assert_eq!(desk.names("deep/results"), names);
     let csv = std::fs::read_to_string(desk.path("deep/results/trajectory.csv")).unwrap();
     let mut lines = csv.lines();
     let positions = "left.j1,left.j2,left.j3,left.j4";

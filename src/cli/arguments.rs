@@ -63,6 +63,7 @@ Examples:
   kinstep plan
   kinstep plan mine.toml --out results --force
   kinstep plan mine.toml --out results --figures
+  kinstep plan mine.toml --out results --format npz,ros2,mcap
   kinstep plan mine.toml --set sigma=0.005 --set law.h=0.3
   kinstep plan mine.toml --set formula=split-ab6 --set law.h=1 --json
   kinstep plan mine.toml --set noise.position=1e-4 --set noise.joints=1e-5     white noise in what is measured
@@ -112,6 +113,22 @@ Examples:
 Values: a,b,c  linspace(from, to, count)  logspace(from, to, count)  uniform(from, to)  loguniform(from, to)
 normal(mean, deviation). A sweep that was interrupted goes on where it stopped when the same command is given again.")]
     Sweep(SweepArguments),
+    /// Write a saved trajectory in other formats
+    #[command(after_help = "\
+Examples:
+  kinstep export results --format all
+  kinstep export results --format mcap --out bags
+  kinstep export theirs.csv --robot panda --base panda_link0 --tip panda_hand_tcp --format mcap
+
+Formats: csv, npz (NumPy), ros2 (trajectory_msgs as YAML), mcap (Foxglove, RViz), moveit (DisplayTrajectory as YAML), all.")]
+    Export(ExportArguments),
+    /// Check a trajectory of any planner against a robot: limits, continuity, rest, the path; exit 1 if a check fails
+    #[command(after_help = "\
+Examples:
+  kinstep check results
+  kinstep check theirs.yaml --robot panda
+  kinstep check bag.mcap --robot panda --scenario mine.toml --max-error 1e-4 --json")]
+    Check(CheckArguments),
     /// Look at difference formulas and make new ones: list, show, check, derive, search, compare
     #[command(
         subcommand,
@@ -145,6 +162,14 @@ pub(super) struct PlanArguments {
 
     #[command(flatten)]
     pub(super) written: OutArguments,
+
+    /// Further formats of the trajectory, beside csv: npz, ros2, mcap, moveit, or all
+    #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', requires = "out")]
+    pub(super) format: Vec<String>,
+
+    /// Add a deceleration to rest where a trajectory for controllers ends in motion
+    #[arg(long, requires = "out")]
+    pub(super) append_stop: bool,
 
     /// Leave out report.html, the page with the replay and the figures
     #[arg(long, requires = "out")]
@@ -241,6 +266,65 @@ fn size(text: &str) -> Result<(f64, f64), String> {
         Some(_) => Err(format!("both sides have to be from {} to {} pixels", SIDES.start(), SIDES.end())),
         None => Err(format!("\"{text}\" is no size; write width and height in pixels, as in 800x600")),
     }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExportArguments {
+    /// The folder that `plan --out` wrote, or a trajectory: CSV, npz, MCAP, or a message as YAML
+    #[arg(value_name = "DIR|TRAJECTORY")]
+    pub(super) trajectory: PathBuf,
+
+    #[command(flatten)]
+    pub(super) robot: TrajectoryRobot,
+
+    /// The formats: csv, npz, ros2, mcap, moveit, or all
+    #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', required = true)]
+    pub(super) format: Vec<String>,
+
+    /// Folder for the files; without it they go beside the trajectory
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+
+    /// Add a deceleration to rest where a trajectory for controllers ends in motion
+    #[arg(long)]
+    pub(super) append_stop: bool,
+
+    /// Replace files that are already there
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct TrajectoryRobot {
+    /// The robot of a lone trajectory: a file, or the name of one that comes with the program
+    #[arg(long, value_name = "FILE")]
+    pub(super) robot: Option<String>,
+
+    /// Link at which the arm begins
+    #[arg(long, value_name = "LINK", requires = "robot", requires = "tip")]
+    pub(super) base: Option<String>,
+
+    /// Link at which the arm ends
+    #[arg(long, value_name = "LINK", requires = "robot", requires = "base")]
+    pub(super) tip: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArguments {
+    /// A trajectory: CSV, npz, MCAP, or a message as YAML; or the folder that `plan --out` wrote
+    #[arg(value_name = "TRAJECTORY|DIR")]
+    pub(super) trajectory: PathBuf,
+
+    #[command(flatten)]
+    pub(super) robot: TrajectoryRobot,
+
+    /// A scenario whose paths the tips should follow, arm by arm of the same name; its robots are taken unless --robot is given
+    #[arg(long, value_name = "FILE")]
+    pub(super) scenario: Option<PathBuf>,
+
+    /// The largest task error that is allowed, in m and rad
+    #[arg(long, value_name = "E", default_value_t = 1e-3)]
+    pub(super) max_error: f64,
 }
 
 #[derive(Debug, Args)]

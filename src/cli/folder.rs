@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::arguments::OutArguments;
 use super::failure::{Exit, Failure};
@@ -11,6 +13,7 @@ use crate::report::{WriteError, write_whole};
 pub(super) struct Folder {
     path: PathBuf,
     replace: bool,
+    interrupted: Arc<AtomicBool>,
 }
 
 impl Folder {
@@ -22,11 +25,17 @@ impl Folder {
         }
         std::fs::create_dir_all(path)
             .map_err(|source| failure(&WriteError::Io { path: path.to_owned(), source }))?;
-        let folder = Self { path: path.to_owned(), replace };
+        let folder = Self { path: path.to_owned(), replace, interrupted: Arc::default() };
         match names.iter().map(|name| folder.path.join(name)).find(|file| file.symlink_metadata().is_ok()) {
             Some(file) if !replace => Err(failure(&WriteError::Exists(file))),
             _ => Ok(folder),
         }
+    }
+
+    /// The same folder, where writing is given up once the flag is set.
+    #[must_use]
+    pub(super) fn interruptible(self, interrupted: Arc<AtomicBool>) -> Self {
+        Self { interrupted, ..self }
     }
 
     /// Where it is.
@@ -40,6 +49,8 @@ impl Folder {
         name: &str,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
+        let content =
+            |out: &mut dyn Write| content(&mut Interruptible { out, interrupted: &self.interrupted });
         write_whole(&self.path.join(name), self.replace, content).map_err(|e| failure(&e))
     }
 }
@@ -48,6 +59,25 @@ impl OutArguments {
     /// [Opens](Folder::open) the folder that was asked for, if one was.
     pub(super) fn folder(&self, names: &[&str]) -> Result<Option<Folder>, Failure> {
         self.out.as_deref().map(|path| Folder::open(path, self.force, names)).transpose()
+    }
+}
+
+/// A writer that fails once a flag is set.
+struct Interruptible<'a> {
+    out: &'a mut dyn Write,
+    interrupted: &'a AtomicBool,
+}
+
+impl Write for Interruptible<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Err(io::Error::other("it was interrupted"));
+        }
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
     }
 }
 

@@ -1,8 +1,11 @@
 //! The command line: arguments in, a document out, an exit code for scripts.
 
 mod arguments;
+mod check;
+mod export;
 mod failure;
 mod folder;
+mod formats;
 mod formula;
 mod formula_barrier;
 mod formula_card;
@@ -19,6 +22,7 @@ mod plan;
 mod plot;
 mod progress;
 mod reproduce;
+mod results;
 mod robot;
 mod robot_export;
 mod robot_ik;
@@ -72,6 +76,8 @@ fn dispatch(arguments: &Arguments, output: &mut Output) -> Result<Exit, Failure>
         Command::Reproduce(command) => reproduce::run(command, output),
         Command::Formula(command) => formula::run(command, own, output),
         Command::Robot(command) => robot::run(command, output),
+        Command::Export(command) => export::run(command, output),
+        Command::Check(command) => check::run(command, output),
         Command::Sweep(command) => sweep::run(command, own, output),
         Command::Schema(command) => schema::run(*command, output),
     }

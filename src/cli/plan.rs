@@ -3,30 +3,18 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::arguments::PictureFormat;
 use super::arguments::PlanArguments;
 use super::failure::{Exit, Failure};
 use super::output::Output;
-use super::plot;
 use super::progress::Progress;
-use crate::formula::FormulaTable;
+use super::results::{Results, Story};
 use crate::math::figure;
 use crate::planner::{Plan, PlanStatus, Planner};
-use crate::report::figure::plan_figures;
-use crate::report::{PlanFormat, PlanJson, PlanPage, PlanText, Suggestion, plan_details, suggestions};
+use crate::report::{PlanFormat, PlanJson, PlanText, Suggestion, plan_details, suggestions};
 use crate::scenario::{FormulaRows, Real, Scenario, ScenarioText};
-use crate::trajectory::{About, Csv, Recording, Trajectory, TrajectoryFormat};
 
 /// The scenario that runs without a file.
 const BUILTIN: &str = include_str!("../../examples/dual_panda.toml");
-
-/// The files of `--out`.
-const NAMES: [&str; 3] = ["trajectory.csv", "plan.json", "scenario.toml"];
-/// The page that is among them unless it is not wanted.
-const PAGE: &str = "report.html";
-
-/// The folder of the pictures in it.
-const FIGURES: &str = "figures";
 
 pub(super) fn run(
     arguments: &PlanArguments,
@@ -41,7 +29,7 @@ pub(super) fn run(
     let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
     let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
     keep_starts(&mut scenario, &planner);
-    let folder = arguments.written.folder(&names(arguments))?;
+    let results = Results::open(arguments, &scenario, &text)?;
     clock.done("reading");
     let mut plan = run_planner(planner);
     clock.done("planning");
@@ -49,40 +37,17 @@ pub(super) fn run(
     let names_formula = scenario.formula.is_some();
     // What is written down says what was run, whatever the default becomes later.
     scenario.formula.get_or_insert_with(|| plan.formula.clone());
+    let next = suggestions(&plan, table, &scenario);
     let details = if output.is_verbose() && !output.wants_json() {
         plan_details(&plan, &scenario.stage(text.folder()).map_err(|e| text.placed(e))?)
     } else {
         String::new()
     };
-    if let Some(folder) = &folder {
-        let stage = scenario.stage(text.folder()).map_err(|e| text.placed(e))?;
-        let again = scenario.relocated(text.folder(), own, folder.path())?.to_toml();
-        let trajectory = Trajectory::of(&plan, Some(About::of(&plan, &again, &stage)));
-        let recording = Recording { trajectory: &trajectory, stage: &stage };
-        folder.write("trajectory.csv", |out| Csv.write(recording, out))?;
-        folder.write("plan.json", |out| PlanJson.write(&plan, out))?;
-        folder.write("scenario.toml", |out| out.write_all(again.as_bytes()))?;
-        let figures = plan_figures(recording, Some(&plan));
-        if arguments.figures {
-            plot::write(
-                &folder.path().join(FIGURES),
-                arguments.written.force,
-                &figures,
-                &[PictureFormat::Svg],
-            )?;
-        }
-        if !arguments.no_report {
-            let page = PlanPage {
-                title: &title(arguments),
-                plan: &plan,
-                recording,
-                figures: &figures,
-                scenario: &again,
-                command: "kinstep plan scenario.toml",
-                suggestions: &suggestions(&plan, table, &scenario),
-            };
-            folder.write(PAGE, |out| page.write(out))?;
-        }
+    let mut names = Vec::new();
+    if let Some(results) = results {
+        let again = scenario.relocated(text.folder(), own, results.path())?.to_toml();
+        let story = Story { scenario: &again, title: &title(arguments), suggestions: &next };
+        names = results.write(&mut plan, &story)?;
     }
     clock.done("writing");
     if output.is_quiet() {
@@ -107,19 +72,13 @@ pub(super) fn run(
         output.report(&format!(
             "{head}{chosen}{}{details}{}",
             written(&PlanText, &plan),
-            closing(arguments, &plan, table, &scenario)
+            closing(arguments, &names, next)
         ))?;
     }
     if output.is_verbose() {
         output.aside(&clock.to_string());
     }
     Ok(exit(&plan))
-}
-
-/// The names of the files that are written.
-fn names(arguments: &PlanArguments) -> Vec<&'static str> {
-    let page = (!arguments.no_report).then_some(PAGE);
-    NAMES.into_iter().chain(page).collect()
 }
 
 /// What the page is called.
@@ -212,21 +171,20 @@ fn exit(plan: &Plan) -> Exit {
 }
 
 /// Where the files are, and what to try next.
-fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, scenario: &Scenario) -> String {
+fn closing(arguments: &PlanArguments, names: &[String], suggested: Vec<Suggestion>) -> String {
     let name = arguments.scenario.as_ref().map_or_else(String::new, |file| format!(" {}", file.display()));
     let mut next = Vec::new();
     let mut written = String::new();
     match &arguments.written.out {
         Some(folder) => {
             let pictures = if arguments.figures { ", and the pictures in figures" } else { "" };
-            written =
-                format!("\nWritten to {}: {}{pictures}.\n", folder.display(), names(arguments).join(", "));
+            written = format!("\nWritten to {}: {}{pictures}.\n", folder.display(), names.join(", "));
         }
         None => {
             next.push(Suggestion::new("--out results", "the trajectory as a file, and a page to look at"));
         }
     }
-    next.extend(suggestions(plan, table, scenario));
+    next.extend(suggested);
     let line = |next: Suggestion| [format!("kinstep plan{name} {}", next.arguments), next.reason];
     let mut lines: Vec<[String; 2]> = next.into_iter().map(line).collect();
     if let Some(folder) = arguments.written.out.as_ref().filter(|_| !arguments.figures) {

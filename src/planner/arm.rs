@@ -1,6 +1,7 @@
 use crate::law::{Law, Pseudoinverse};
-use crate::robot::Chain;
+use crate::robot::{Chain, ChainScratch};
 use crate::task::{Motion, TaskKind};
+use nalgebra::Vector6;
 
 /// One arm of a plan: a chain, where it stands, and what its tip shall do by which law.
 pub struct Arm {
@@ -72,6 +73,12 @@ impl Arm {
     /// The chain it moves, mounted in the world.
     pub fn chain(&self) -> &Chain {
         &self.chain
+    }
+
+    /// The task error (linear \[m\]; angular \[rad\]) with the joints at `q` [rad or m] at time `t` \[s\]: zero in the
+    /// components that the task does not ask for.
+    pub fn task_error(&self, t: f64, q: &[f64], scratch: &mut ChainScratch) -> Vector6<f64> {
+        self.task.error(&self.chain.forward(q, scratch).pose(), &self.motion.at(t))
     }
 
     /// Where the joint of that name starts [rad or m], if it is one of its own.

@@ -43,6 +43,14 @@ impl Scenario {
         self.builder(formula?).arms(arms).build().map_err(|e| self.refused(&e))
     }
 
+    /// Returns the arms with the paths that they should follow.
+    ///
+    /// # Errors
+    /// As [`Scenario::planner`].
+    pub fn arms(&self, folder: Option<&Path>) -> Result<Vec<Arm>, ScenarioError> {
+        self.build_arms(folder).into_iter().collect()
+    }
+
     /// Returns the row that the scenario names, or the best general one, if it may be run.
     pub(crate) fn formula_of<'t>(&self, table: &'t FormulaTable) -> Result<&'t Formula, ScenarioError> {
         let at = KeyPath::dotted("formula");

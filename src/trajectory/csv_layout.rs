@@ -130,7 +130,7 @@ fn part<'n>(name: &'n str, known: &HashSet<&str>) -> Part<'n> {
     if let Some(joint) = name.strip_suffix(".velocity") {
         return Part::Velocity(joint);
     }
-    let is_error = name == "error" || name.ends_with(".error");
+    let is_error = name == "error" || name.strip_suffix(".error").is_some();
     if is_error && !known.contains(format!("{name}.velocity").as_str()) {
         return Part::Error(name.strip_suffix(".error").unwrap_or_default());
     }

@@ -55,9 +55,9 @@ fn column(index: usize, title: &str) -> Value {
     let name = if index == 0 { "t".to_owned() } else { format!("column_{}", index + 1) };
     let description = if index == 0 {
         "time [s]"
-    } else if title.ends_with(".velocity") {
+    } else if title.strip_suffix(".velocity").is_some() {
         "joint velocity [rad/s or m/s]"
-    } else if title.ends_with(".error") {
+    } else if title.strip_suffix(".error").is_some() {
         "norm of the task error [m, rad]"
     } else {
         "joint position [rad or m]"
@@ -73,8 +73,8 @@ pub(super) fn beside(table: &Path) -> Result<Option<About>, Problem> {
     let Ok(text) = fs::read_to_string(&path) else { return Ok(None) };
     let document: Value = serde_json::from_str(&text)
         .map_err(|e| Problem::new(format!("its metadata, {}, are not JSON: {e}", path.display())))?;
-    let notes = document["notes"].as_array().into_iter().flatten();
-    let note = notes.filter_map(|note| note[NOTE].as_array()).next();
+    let mut notes = document["notes"].as_array().into_iter().flatten();
+    let note = notes.find_map(|note| note[NOTE].as_array());
     let entries = note.into_iter().flatten();
     let text = entries.filter_map(|pair| Some((pair[0].as_str()?, pair[1].as_str()?)));
     Ok(About::from_entries(text))

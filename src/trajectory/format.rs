@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::{Stage, Trajectory};
+use super::{Refusal, Stage, Trajectory};
 
 /// A trajectory and the robots that move along it.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +15,15 @@ pub struct Recording<'a> {
 
 /// A format that trajectories are handed on in. A new format is a file with one implementation.
 pub trait TrajectoryFormat {
+    /// Says whether the trajectory can be written in this format, before anything is.
+    ///
+    /// # Errors
+    /// [`Refusal`] where those who read the format would not take it.
+    fn check(&self, recording: Recording<'_>) -> Result<(), Refusal> {
+        let _ = recording;
+        Ok(())
+    }
+
     /// Writes the trajectory.
     ///
     /// # Errors

@@ -5,23 +5,42 @@
 //! [`Trajectory::read`] reads what was written, and what other programs write.
 
 mod about;
+mod cdr;
+mod clock;
+mod controller;
 mod csv;
 mod csv_layout;
 mod csv_metadata;
 mod csv_records;
 mod error;
 mod format;
+mod formats;
+mod group;
+mod inspect;
+mod mcap;
+mod mcap_records;
+mod npy;
+mod npz;
 mod read;
+mod ros2_schema;
+mod ros2_yaml;
 mod stage;
 #[expect(clippy::module_inception, reason = "the file is named after the type that it holds")]
 mod trajectory;
+mod yaml;
 
+pub use self::mcap::Mcap;
 pub use about::About;
+pub use controller::Refusal;
 pub use csv::Csv;
 pub use csv_metadata::CsvMetadata;
 pub(crate) use csv_records::Records;
 pub use error::{Problem, TextPlace, TrajectoryError, TrajectoryErrorKind};
 pub use format::{Recording, TrajectoryFormat};
+pub use formats::{Export, ExportFile};
+pub use inspect::{JointFigures, Met, TimeFigures};
+pub use npz::Npz;
 pub use read::{Source, TrajectoryReader};
+pub use ros2_yaml::{MoveItYaml, Ros2Yaml};
 pub use stage::{Machine, Stage, StagedArm};
 pub use trajectory::{ArmTrajectory, Trajectory};

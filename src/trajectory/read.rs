@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::error::{Problem, TrajectoryError, TrajectoryErrorKind};
-use super::{Csv, Trajectory};
+use super::{Csv, Mcap, Npz, Ros2Yaml, Trajectory};
 
 /// The longest file that is read [bytes].
 const LONGEST: u64 = 4 << 30;
@@ -55,10 +55,11 @@ pub trait TrajectoryReader {
 }
 
 /// The formats, those with unmistakable first bytes first; the last one takes everything.
-const READERS: &[&dyn TrajectoryReader] = &[&Csv];
+const READERS: &[&dyn TrajectoryReader] = &[&Npz, &Mcap, &Ros2Yaml { machine: String::new() }, &Csv];
 
 impl Trajectory {
-    /// Returns the trajectory in a file of any format that can be read: comma-separated values.
+    /// Returns the trajectory in a file of any format that can be read: comma-separated values, NumPy
+    /// arrays, messages as YAML, recordings (MCAP).
     ///
     /// # Errors
     /// [`TrajectoryError`] with the place where the text is wrong: the file can not be read, its values are not finite,
@@ -75,7 +76,8 @@ impl Trajectory {
     /// As [`Trajectory::read`].
     pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Self, TrajectoryError> {
         let source = Source { path, bytes };
-        let reader = READERS.iter().find(|reader| reader.knows(source)).unwrap_or(&READERS[0]);
+        let reader =
+            READERS.iter().find(|reader| reader.knows(source)).unwrap_or(&READERS[READERS.len() - 1]);
         let read = reader.read(source).and_then(checked);
         read.map_err(|problem| problem.within(path, source.text().unwrap_or_default()))
     }

@@ -87,6 +87,11 @@ impl StagedArm {
         let joints = chain.joints().iter().map(|joint| place(&joint.name)).collect::<Option<_>>()?;
         Some(Self { name: name.into(), machine, chain, task, joints })
     }
+
+    /// Whether these are the joints of its chain, in their order.
+    pub fn moves(&self, joints: &[String]) -> bool {
+        self.chain.joints().iter().map(|joint| &joint.name).eq(joints)
+    }
 }
 
 /// The robots of a plan, and which of their chains its arms are.

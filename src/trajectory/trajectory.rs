@@ -36,6 +36,27 @@ impl ArmTrajectory {
         &self.positions[n * joints..(n + 1) * joints]
     }
 
+    /// Returns the same with the joints in that order, where they are the same joints; unchanged where they are not.
+    #[must_use]
+    pub fn in_order(&self, joints: &[&str]) -> Self {
+        let place = |name: &&str| self.joints.iter().position(|own| own == name);
+        let places: Option<Vec<usize>> = joints.iter().map(place).collect();
+        let Some(places) = places.filter(|places| places.len() == self.joints.len() && !places.is_empty())
+        else {
+            return self.clone();
+        };
+        let ordered = |values: &[f64]| -> Vec<f64> {
+            values.chunks_exact(places.len()).flat_map(|row| places.iter().map(|&place| row[place])).collect()
+        };
+        Self {
+            name: self.name.clone(),
+            joints: joints.iter().map(|&name| name.to_owned()).collect(),
+            positions: ordered(&self.positions),
+            velocities: ordered(&self.velocities),
+            errors: self.errors.clone(),
+        }
+    }
+
     /// The joint velocities [rad/s or m/s] of sample `n`, where they are known.
     pub fn velocity(&self, n: usize) -> Option<&[f64]> {
         let joints = self.joints.len();

@@ -1,0 +1,195 @@
+//! Messages of trajectories as YAML: what `ros2 topic pub --yaml-file` and `rclpy` load.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use super::clock::Stamp;
+use super::controller::{Refusal, check_command};
+use super::error::Problem;
+use super::group::Group;
+use super::read::{Source, TrajectoryReader};
+use super::yaml::{self, Node};
+use super::{About, ArmTrajectory, Machine, Recording, Trajectory, TrajectoryFormat};
+
+/// The line of a comment that has the machine's name.
+const MACHINE: &str = "# machine: ";
+
+/// `trajectory_msgs/msg/JointTrajectory` of one machine: all joints of its arms, each once, by their names in the URDF.
+/// Times are rounded to nanoseconds and count from the first sample; positions and velocities read back as they were.
+///
+/// What the joint trajectory controller of `ros2_control` refuses is refused before anything is written: times that do not
+/// increase in nanoseconds or have more than 31 bits of seconds, an end that is not at rest, values that are not finite.
+#[derive(Clone, Debug)]
+pub struct Ros2Yaml {
+    /// The machine's name, or that of an arm that stands alone.
+    pub machine: String,
+}
+
+/// `moveit_msgs/msg/DisplayTrajectory` of one machine, with the positions of all its joints at the start. Fields that are
+/// left out have their defaults. Refused is what [`Ros2Yaml`] refuses.
+#[derive(Clone, Debug)]
+pub struct MoveItYaml {
+    /// The machine's name, or that of an arm that stands alone.
+    pub machine: String,
+}
+
+impl TrajectoryFormat for Ros2Yaml {
+    fn check(&self, recording: Recording<'_>) -> Result<(), Refusal> {
+        check_command(recording)?;
+        group(recording, &self.machine).map(|_| ())
+    }
+
+    fn write(&self, recording: Recording<'_>, out: &mut dyn Write) -> io::Result<()> {
+        let group = group(recording, &self.machine).map_err(io::Error::other)?;
+        write_comment(recording.trajectory, &group, out)?;
+        write_joint_trajectory(recording.trajectory, &group, "", out)
+    }
+}
+
+impl TrajectoryFormat for MoveItYaml {
+    fn check(&self, recording: Recording<'_>) -> Result<(), Refusal> {
+        check_command(recording)?;
+        group(recording, &self.machine).map(|_| ())
+    }
+
+    fn write(&self, recording: Recording<'_>, out: &mut dyn Write) -> io::Result<()> {
+        let group = group(recording, &self.machine).map_err(io::Error::other)?;
+        write_comment(recording.trajectory, &group, out)?;
+        let model = group.machine.map_or(group.name, |machine| machine.robot.name());
+        writeln!(out, "model_id: {}\ntrajectory:\n- joint_trajectory:", yaml::quoted(model))?;
+        write_joint_trajectory(recording.trajectory, &group, "    ", out)?;
+        let start = start_of(&group);
+        let mut text = String::from("trajectory_start:\n  joint_state:\n    name: ");
+        yaml::push_list(&mut text, start.iter().map(|(name, _)| yaml::quoted(name)));
+        text.push_str("\n    position: ");
+        yaml::push_numbers(&mut text, start.iter().map(|&(_, position)| position));
+        let _ = write!(text, "\n  is_diff: {}", group.machine.is_none());
+        writeln!(out, "{text}")
+    }
+}
+
+fn group<'a>(recording: Recording<'a>, name: &str) -> Result<Group<'a>, Refusal> {
+    let groups = Group::all(recording);
+    let known: Vec<&str> = groups.iter().map(|group| group.name).collect();
+    let message = format!("no machine `{name}` moves; there are {}", known.join(", "));
+    groups.into_iter().find(|group| group.name == name).ok_or(Refusal(message))
+}
+
+/// The joints that move on their own, and where they are in the first sample: of the whole machine where it is known.
+pub(super) fn start_of<'a>(group: &Group<'a>) -> Vec<(&'a str, f64)> {
+    let moved = group.columns.iter().map(|column| (column.joint, column.position(0)));
+    let rest = |machine: &'a Machine| {
+        let joints = machine.robot.joints().iter().zip(&machine.rest);
+        let own = joints.filter(|(joint, _)| joint.kind.is_movable() && joint.mimic.is_none());
+        own.map(|(joint, &position)| (joint.name.as_str(), position))
+    };
+    let resting = group.machine.into_iter().flat_map(rest);
+    let resting = resting.filter(|(name, _)| group.columns.iter().all(|column| column.joint != *name));
+    moved.chain(resting).collect()
+}
+
+/// What made the trajectory; `rclpy` and `ros2` skip comments.
+fn write_comment(trajectory: &Trajectory, group: &Group<'_>, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "{MACHINE}{}", group.name.escape_debug())?;
+    let entries = trajectory.about.iter().flat_map(About::entries);
+    entries.into_iter().try_for_each(|(key, value)| writeln!(out, "# {key}: {}", value.escape_debug()))
+}
+
+fn write_joint_trajectory(
+    trajectory: &Trajectory,
+    group: &Group<'_>,
+    indent: &str,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let mut text =
+        format!("{indent}header:\n{indent}  stamp: {{sec: 0, nanosec: 0}}\n{indent}  frame_id: \"\"\n");
+    let _ = write!(text, "{indent}joint_names: ");
+    yaml::push_list(&mut text, group.columns.iter().map(|column| yaml::quoted(column.joint)));
+    let _ = write!(text, "\n{indent}points:");
+    writeln!(out, "{text}")?;
+    for (sample, time) in trajectory.times.iter().enumerate() {
+        text.clear();
+        let _ = write!(text, "{indent}- positions: ");
+        yaml::push_numbers(&mut text, group.positions(sample));
+        if group.has_velocities() {
+            let _ = write!(text, "\n{indent}  velocities: ");
+            yaml::push_numbers(&mut text, group.velocities(sample));
+        }
+        let Stamp { sec, nanosec } = Stamp::of(time - trajectory.times[0]).unwrap_or(Stamp::ZERO);
+        let _ = write!(text, "\n{indent}  time_from_start: {{sec: {sec}, nanosec: {nanosec}}}");
+        writeln!(out, "{text}")?;
+    }
+    Ok(())
+}
+
+impl TrajectoryReader for Ros2Yaml {
+    fn knows(&self, source: Source<'_>) -> bool {
+        source.has_extension(&["yaml", "yml"]) || source.bytes.starts_with(MACHINE.as_bytes())
+    }
+
+    fn read(&self, source: Source<'_>) -> Result<Trajectory, Problem> {
+        let text = source.text()?;
+        let comments = || text.lines().take_while(|line| line.starts_with('#'));
+        let name = comments().find_map(|line| line.strip_prefix(MACHINE)).unwrap_or("arm");
+        let documents = yaml::documents(text)?;
+        let mut found = Vec::new();
+        for document in &documents {
+            joint_trajectories(document, &mut found);
+        }
+        let [message] = found[..] else {
+            let at = found.get(1).map_or(0, |node| node.at());
+            let message = format!(
+                "expected one joint trajectory (`joint_names` with `points`), here are {}",
+                found.len()
+            );
+            return Err(Problem::at(at, message));
+        };
+        let mut trajectory = trajectory_of(message, name)?;
+        let entries = comments().filter_map(|line| line.strip_prefix("# ")?.split_once(": "));
+        trajectory.about = About::from_entries(entries);
+        Ok(trajectory)
+    }
+}
+
+/// Finds joint trajectories: a message itself, or within a goal of a controller, a robot's or a display trajectory.
+fn joint_trajectories<'n, 't>(node: &'n Node<'t>, found: &mut Vec<&'n Node<'t>>) {
+    if node.get("joint_names").is_some() && node.get("points").is_some() {
+        found.push(node);
+        return;
+    }
+    for key in ["goal", "trajectory", "joint_trajectory"] {
+        match node.get(key) {
+            Some(inner) if inner.items().is_some() => {
+                inner.items().into_iter().flatten().for_each(|item| joint_trajectories(item, found));
+            }
+            Some(inner) => joint_trajectories(inner, found),
+            None => {}
+        }
+    }
+}
+
+fn trajectory_of(message: &Node<'_>, name: &str) -> Result<Trajectory, Problem> {
+    let names = message.need("joint_names")?.list("a list of names")?;
+    let joints: Vec<String> =
+        names.iter().map(|name| name.text().map(str::to_owned)).collect::<Result<_, _>>()?;
+    let mut arm = ArmTrajectory { joints, ..ArmTrajectory::empty(name) };
+    let mut times: Vec<f64> = Vec::new();
+    let points = message.need("points")?.list("a list of points")?;
+    let has_velocities =
+        points.first().and_then(|point| point.get("velocities")).is_some_and(|list| !list.is_empty());
+    for point in points {
+        let span = point.need("time_from_start")?;
+        let time = span.need("sec")?.number()? + 0.0;
+        let nanosec = span.need("nanosec").or_else(|e| span.need("nanosecs").map_err(|_| e))?.number()?;
+        let time = Stamp { sec: time as i32, nanosec: nanosec as u32 }.seconds();
+        if times.last().is_some_and(|&before| time <= before) {
+            return Err(Problem::at(span.at(), super::read::not_later(times[times.len() - 1], time)));
+        }
+        times.push(time);
+        point.need("positions")?.numbers(arm.joints.len(), &mut arm.positions)?;
+        if has_velocities {
+            point.need("velocities")?.numbers(arm.joints.len(), &mut arm.velocities)?;
+        }
+    }
+    Ok(Trajectory { about: None, times, arms: vec![arm] })
+}

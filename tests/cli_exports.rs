@@ -1,0 +1,180 @@
+//! Trajectories handed on by the program, and checked by it.
+
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
+
+mod cli;
+
+use cli::{Desk, SMALL};
+use kinstep::trajectory::Trajectory;
+
+const EVERYTHING: [&str; 8] = [
+    "plan.json",
+    "scenario.toml",
+    "trajectory.csv",
+    "trajectory.csv-metadata.json",
+    "trajectory.left.moveit.yaml",
+    "trajectory.left.yaml",
+    "trajectory.mcap",
+    "trajectory.npz",
+];
+
+/// An arm that ends in motion.
+fn hasty() -> String {
+    SMALL.replace("radius = 0.1 }", "radius = 0.1, time_law = \"linear\" }")
+}
+
+#[test]
+fn a_plan_is_written_in_every_format_and_exported_again_to_the_same_bytes() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    desk.run(&["plan", "s.toml", "--out", "o", "--format", "all"]).expect(0);
+    assert_eq!(desk.names("o"), EVERYTHING);
+    let run = desk.run(&["export", "o", "--format", "all", "--out", "again", "--json"]).expect(0);
+    assert_eq!(run.json()["written"].as_array().unwrap().len(), 6);
+    for name in desk.names("again") {
+        let [one, two] = ["o", "again"].map(|folder| std::fs::read(desk.path(folder).join(&name)).unwrap());
+        assert!(one == two, "{name} differs");
+    }
+    let table = Trajectory::read(desk.path("o/trajectory.csv")).unwrap();
+    assert!(table.about.is_some());
+    for name in ["o/trajectory.npz", "o/trajectory.mcap", "o/trajectory.left.yaml"] {
+        let other = Trajectory::read(desk.path(name)).unwrap();
+        assert_eq!(other.about, table.about, "{name}");
+        assert_eq!(other.arms[0].positions, table.arms[0].positions, "{name}");
+        assert_eq!(other.arms[0].velocities, table.arms[0].velocities, "{name}");
+    }
+}
+
+#[test]
+fn files_are_decided_before_anything_is_computed() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    let run = desk.run(&["plan", "s.toml", "--out", "o", "--format", "npy"]).expect(2);
+    assert!(run.err.contains("did you mean npz?"), "{}", run.err);
+    assert!(desk.run(&["plan", "s.toml", "--format", "npz"]).expect(2).err.contains("--out"));
+    assert_eq!(desk.names("."), ["s.toml"]);
+    std::fs::create_dir(desk.path("o")).unwrap();
+    std::fs::write(desk.path("o/trajectory.mcap"), "mine").unwrap();
+    desk.run(&["plan", "s.toml", "--out", "o", "--format", "mcap"]).expect(6);
+    assert_eq!(desk.names("o"), ["trajectory.mcap"]);
+    desk.run(&["plan", "s.toml", "--out", "o", "--format", "mcap", "--force"]).expect(0);
+    let error = desk.run(&["export", "o", "--format", "mcap", "--json"]).expect(6).error();
+    assert!(error["message"].as_str().unwrap().contains("--force"), "{error}");
+}
+
+#[test]
+fn an_end_in_motion_is_refused_for_controllers_unless_a_stop_is_added() {
+    let desk = Desk::new(&[("s.toml", &hasty())]);
+    let run = desk.run(&["plan", "s.toml", "--out", "o", "--format", "ros2"]).expect(2);
+    assert!(run.err.contains("--append-stop"), "{}", run.err);
+    assert_eq!(desk.names("o"), Vec::<String>::new());
+    desk.run(&["plan", "s.toml", "--out", "o", "--format", "ros2", "--append-stop"]).expect(0);
+    let table = Trajectory::read(desk.path("o/trajectory.csv")).unwrap();
+    let command = Trajectory::read(desk.path("o/trajectory.left.yaml")).unwrap();
+    assert_eq!(command.samples(), table.samples() + 1);
+    assert!(command.arms[0].velocity(table.samples()).unwrap().iter().all(|velocity| *velocity == 0.0));
+    assert!(desk.run(&["check", "o"]).expect(1).out.contains("ends in motion"));
+}
+
+#[test]
+fn a_lone_table_gets_a_robot_and_its_joints_are_known() {
+    let table = "t,j2,j1,j3,j4\n0,0.2,0.1,0.3,0.4\n0.1,0.2,0.1,0.3,0.4\n";
+    let robot = ["--robot", "planar4", "--base", "base", "--tip", "tip"];
+    let desk = Desk::new(&[("a.csv", table), ("b.csv", &table.replace("j2", "j22"))]);
+    let export = |file: &str| desk.run(&[&["export", file, "--format", "mcap"], &robot[..]].concat());
+    let error = export("b.csv").expect(3);
+    assert!(error.err.contains("j22") && error.err.contains("j2"), "{}", error.err);
+    export("a.csv").expect(0);
+    let bag = Trajectory::read(desk.path("trajectory.mcap")).unwrap();
+    assert_eq!(bag.arms[0].position(0), [0.1, 0.2, 0.3, 0.4]);
+    assert_eq!(bag.arms[0].joints, ["j1", "j2", "j3", "j4"]);
+    desk.run(&["export", "a.csv", "--format", "npz"]).expect(0);
+    let error = desk.run(&["check", "b.csv", "--robot", "planar4"]).expect(3);
+    assert!(error.err.contains("did you mean"), "{}", error.err);
+    desk.run(&["check", "a.csv"]).expect(2);
+    desk.run(&["check", "none.csv", "--robot", "planar4"]).expect(6);
+}
+
+#[test]
+fn a_bad_table_is_shown_where_it_is_bad() {
+    let desk = Desk::new(&[("a.csv", "t,j1\n0,1\n1,x\n")]);
+    let run = desk.run(&["check", "a.csv", "--robot", "planar4"]).expect(2);
+    assert!(run.err.starts_with("a.csv:3:3: error: the position of `j1` is not a number"), "{}", run.err);
+    let error = desk.run(&["check", "a.csv", "--robot", "planar4", "--json"]).expect(2).error();
+    assert_eq!((&error["line"], &error["column"]), (&3.into(), &3.into()));
+}
+
+#[test]
+fn a_good_plan_passes_every_check_in_every_format() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    desk.run(&["plan", "s.toml", "--out", "o", "--format", "all"]).expect(0);
+    for file in
+        ["o", "o/trajectory.csv", "o/trajectory.npz", "o/trajectory.mcap", "o/trajectory.left.moveit.yaml"]
+    {
+        let run = desk.run(&["check", file, "--scenario", "s.toml", "--json"]).expect(0);
+        let checked = run.json();
+        assert_eq!(checked["ok"], true, "{file}: {checked}");
+        assert!(checked["arms"][0]["max_error"].as_f64().unwrap() < 1e-5, "{checked}");
+        assert_eq!(checked["time"]["even"], true, "{file}: {checked}");
+    }
+    let run = desk.run(&["check", "o", "--max-error", "1e-15"]).expect(1);
+    assert!(run.out.contains("FAILED") && run.out.contains("--max-error"), "{}", run.out);
+}
+
+#[test]
+fn a_spoilt_trajectory_fails_its_checks() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    desk.run(&["plan", "s.toml", "--out", "o"]).expect(0);
+    let text = std::fs::read_to_string(desk.path("o/trajectory.csv")).unwrap();
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    for line in &mut lines[101..] {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        fields[1] = format!("{}", fields[1].parse::<f64>().unwrap() + 1.0);
+        *line = fields.join(",");
+    }
+    std::fs::write(desk.path("o/spoilt.csv"), lines.join("\n")).unwrap();
+    let run = desk.run(&["check", "o/spoilt.csv", "--scenario", "s.toml", "--json"]).expect(1);
+    let checked = run.json();
+    let arm = &checked["arms"][0];
+    assert_eq!((&arm["continuous"], &arm["velocities_agree"]), (&false.into(), &false.into()), "{checked}");
+    assert!(arm["max_error"].as_f64().unwrap() > 0.1, "{checked}");
+    let failures = checked["failures"].to_string();
+    assert!(failures.contains("jumps by") && failures.contains("t = 1 s"), "{failures}");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_can_not_be_written_is_exit_6_and_leaves_nothing() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    desk.run(&["plan", "s.toml", "--out", "o"]).expect(0);
+    desk.run(&["export", "o", "--format", "npz", "--out", "s.toml"]).expect(6);
+    desk.run(&["export", "o/scenario.toml", "--format", "npz"]).expect(2);
+    std::fs::remove_file(desk.path("o/scenario.toml")).unwrap();
+    desk.run(&["export", "o", "--format", "npz"]).expect(6);
+    assert_eq!(desk.names("o").len(), 3);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_no_file_that_is_not_whole() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    let arguments = ["plan", "s.toml", "--set", "sigma=1e-5", "--out", "o", "--format", "all"];
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("kinstep"))
+        .current_dir(desk.path("."))
+        .args(arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begin = Instant::now();
+    while !desk.names("o").iter().any(|name| name.contains(".part")) {
+        assert!(begin.elapsed() < Duration::from_mins(2), "nothing is written");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let mut sentence = String::new();
+    std::io::Read::read_to_string(&mut child.stderr.take().unwrap(), &mut sentence).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(6), "{sentence}");
+    assert!(sentence.contains("trajectory.csv can not be written: it was interrupted"), "{sentence}");
+    assert_eq!(desk.names("o"), Vec::<String>::new());
+}
