@@ -208,21 +208,34 @@ PEERS = {
 }
 
 NOTES = """
+## By size
+
+![Cost of a step against the number of arms and of joints](pictures/cost.svg)
+
+A step costs the more the more arms there are, in stairs of four lanes, and grows with the number of joints in proportion. The
+lines go through the first and the last point.
+
 ## What makes it so
 
 - Constants between joints are folded when a chain is made: fixed joints merge, axes turn onto z, and what is left is a
   turn about x and a shift, of which right angles and zeros cost nothing (`src/robot/segment.rs`).
-- Arms that move in the same way are evaluated side by side in the lanes of registers, two in a dual-arm plan, four
-  otherwise; a single arm takes two lanes for itself. AVX2 is used where the machine has it (found out at run time), the base
-  instructions elsewhere, with the same bits (`src/math/lanes.rs`).
+- Arms that move in the same way are lanes of registers, two in a dual-arm plan, four otherwise; a single arm takes two lanes
+  for itself. The state lies as the lanes do, joint by joint, so kinematics, errors, solves, limits, statistics and history
+  all read and write it as it lies (`src/planner/field.rs`, `src/planner/bundle.rs`). AVX2 is used where the machine has it
+  (found out at run time), the base instructions elsewhere, with the same bits (`src/math/lanes.rs`).
+- A sample in which all lanes are clearly on their paths, far from singularities and within limits is done with at a glance
+  (`src/planner/glance.rs`); only others are looked at arm by arm.
+- Plans of one robot are stepped together, by one stepper, as if they were arms of one plan (`src/planner/batch.rs`).
 - Sines and cosines of all joints are taken four at a time (`src/math/sin_cos.rs`).
-- Gram matrix, factors and substitutions have static sizes and constant indices (`src/math/gram.rs`).
+- Gram matrix, factors and substitutions have static sizes and constant indices; its sums are formed in two passes over the
+  columns, so that they stay in registers (`src/math/gram.rs`).
 
 ## What limits it
 
-About half of a step of two arms is spent outside the vector code: combining the history (an eighth), gathering references
-and handing out results, limits and statistics. Plans run together share the vector code but keep their own history,
-monitors and records, and recording a sample of two arms writes 320 bytes; so whole plans gain less from lanes than steps do.
+Arithmetic. Two thirds of the instructions of the vector code are additions and multiplications, and none is fused with
+another: fused ones would save about a fifth of a step, but machines without them, and the base instructions, would give other
+bits or be far slower. What is left outside the vector code is gathering references and telling every arm where it
+is. Whole plans are also made and recorded: a sample of two arms writes 320 bytes.
 """
 
 

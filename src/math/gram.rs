@@ -173,7 +173,7 @@ fn substitute_back<V: Lanes, const M: usize, const I: usize>(factor: &LaneFactor
     }
 }
 
-/// Row `I` of `L^-1` below the diagonal, and its part of the trace.
+/// Row `I` of `-L^-1` below the diagonal, and its part of the trace.
 #[inline(always)]
 fn invert_row<V: Lanes, const M: usize, const I: usize>(
     factor: &LaneFactor<V, M>,
@@ -183,7 +183,7 @@ fn invert_row<V: Lanes, const M: usize, const I: usize>(
     let mut squares = trace.like(1.0);
     rows!(M, J, {
         if J < I {
-            let mut entry = -factor.lower[I][J];
+            let mut entry = factor.lower[I][J];
             for k in J + 1..I {
                 entry = entry - factor.lower[I][k] * inverse[k][J];
             }

@@ -296,7 +296,7 @@ macro_rules! vector_lanes {
             #[inline(always)]
             fn all_within(self, bound: f64) -> bool {
                 use fearless_simd::SimdMask;
-                (self.simd_lt(self.like(bound)) & self.like(-bound).simd_lt(self)).all_true()
+                Lanes::abs(self).simd_lt(self.like(bound)).all_true()
             }
         }
     };

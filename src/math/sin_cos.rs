@@ -113,8 +113,7 @@ fn into_quadrant<V: Lanes>(turns: V, sine: V, cosine: V) -> (V, V) {
     let pairs = (turns * half).floor();
     let odd = turns - two * pairs;
     let sign = one - two * (pairs - two * (pairs * half).floor());
-    let cosine_sign = sign * (one - two * odd);
-    (V::pick(odd, sine, cosine) * sign, V::pick(odd, cosine, sine) * cosine_sign)
+    (V::pick(odd, sine, cosine) * sign, V::pick(odd, cosine, -sine) * sign)
 }
 
 #[cfg(test)]

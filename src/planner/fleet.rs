@@ -210,7 +210,7 @@ impl Fleet {
     }
 
     /// Records with the first sample in them.
-    pub(super) fn begin_records(&self) -> Vec<Vec<ArmPlan>> {
+    fn begin_records(&self) -> Vec<Vec<ArmPlan>> {
         let begin = |course: &Course| {
             let arms = self.field.arms[course.arms.clone()].iter();
             arms.map(|arm| empty_plan(arm, course.description.steps)).collect()
@@ -223,7 +223,7 @@ impl Fleet {
     }
 
     /// Records the present sample of a plan, as it was told to the arms.
-    pub(super) fn write_down(&self, course: usize, record: &mut [ArmPlan]) {
+    fn write_down(&self, course: usize, record: &mut [ArmPlan]) {
         for (arm, plan) in self.field.arms[self.courses[course].arms.clone()].iter().zip(record) {
             plan.positions.extend_from_slice(&arm.positions);
             plan.velocities.extend_from_slice(&arm.velocities);
@@ -234,15 +234,16 @@ impl Fleet {
     /// Runs all plans to their ends, telling `progress` after every step how far the first is.
     pub(super) fn run_with(mut self, mut progress: impl FnMut(usize, usize)) -> Vec<Plan> {
         let mut records = self.begin_records();
+        let mut written: Vec<usize> = (0..self.courses.len()).map(|course| self.index(course)).collect();
         while !self.are_all_finished() {
-            let going: Vec<usize> =
-                (0..self.courses.len()).filter(|&course| !self.is_finished(course)).collect();
             self.step();
-            for course in going {
+            for (course, record) in records.iter_mut().enumerate() {
                 // A sample at which a run stopped is not one to send to a robot.
-                if self.courses[course].stop.is_none() {
-                    self.write_down(course, &mut records[course]);
-                    progress(self.index(course), self.courses[course].description.steps);
+                let index = self.index(course);
+                if index > written[course] && self.courses[course].stop.is_none() {
+                    written[course] = index;
+                    self.write_down(course, record);
+                    progress(index, self.courses[course].description.steps);
                 }
             }
         }
