@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
-use kinstep::planner::{Arm, Noise, Planner, PlannerBuilder, Start};
+use kinstep::planner::{Arm, Batch, Noise, Planner, PlannerBuilder, Start};
 use kinstep::robot::embedded;
 use kinstep::scheme;
 use kinstep::task::{Circle, Motion, Planar, Plane, Sin2, TaskKind};
@@ -36,6 +36,20 @@ fn a_thousand_steps_of_two_seven_joint_arms_allocate_nothing() {
             }
         });
         assert_eq!((planner.index(), planner.stop()), (1000, None));
+        assert_eq!(spent.count_total, 0, "{spent:?}");
+    }
+}
+
+#[test]
+fn a_thousand_steps_of_three_plans_at_once_allocate_nothing() {
+    for start in [Start::Paper, Start::Rk8] {
+        let mut batch = Batch::new((0..3).map(|_| planner(start.clone())));
+        let spent = allocation_counter::measure(|| {
+            for _ in 0..1000 {
+                batch.step();
+            }
+        });
+        assert_eq!((batch.index(2), batch.stop(2)), (1000, None));
         assert_eq!(spent.count_total, 0, "{spent:?}");
     }
 }

@@ -5,7 +5,7 @@
 use kinstep::formula::FormulaTable;
 use kinstep::law::{Demand, Law, Pseudoinverse, Resolution};
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
-use kinstep::planner::{Arm, Plan, Planner, run_together};
+use kinstep::planner::{Arm, Batch, Plan, Planner, run_together};
 use kinstep::robot::embedded;
 use kinstep::task::{Circle, Motion, Planar, Plane, Quintic, TaskKind};
 
@@ -141,4 +141,82 @@ fn plans_together_are_the_plans_one_by_one_to_the_last_bit() {
         assert_same(together, &alone);
     }
     assert!(run_together(Vec::new()).is_empty());
+}
+
+#[test]
+fn a_batch_is_its_plans_sample_by_sample_also_when_some_leave_early() {
+    // Of the plans alike, one loses its path, one is shorter, and one has gone ahead of the others.
+    let formula = FormulaTable::builtin().get("la6-wang-guo").unwrap();
+    let make = |&(radius, duration, ahead): &(f64, f64, usize)| {
+        let arms = [PANDA, IIWA].into_iter().enumerate();
+        let arms = arms.map(|(i, robot)| arm(i, robot, TaskKind::Pose, radius, false));
+        let planner = Planner::builder().formula(formula).sigma(0.01).duration(duration).gain(20.0);
+        let mut planner = planner.arms(arms).build().unwrap();
+        (0..ahead).for_each(|_| planner.step());
+        planner
+    };
+    let cases =
+        [(0.05, 1.0, 3), (0.45, 1.0, 3), (0.04, 0.6, 3), (0.03, 1.0, 3), (0.05, 1.0, 7), (0.02, 1.0, 3)];
+    let mut alone: Vec<Planner> = cases.iter().map(make).collect();
+    let mut batch = Batch::new(cases.iter().map(make));
+    assert_eq!(batch.plans(), cases.len());
+    while !batch.is_finished() {
+        batch.step();
+        for (plan, alone) in alone.iter_mut().enumerate() {
+            alone.step();
+            assert_eq!(batch.index(plan), alone.index(), "plan {plan}");
+            assert_eq!(batch.stop(plan), alone.stop(), "plan {plan}");
+            assert_eq!(batch.is_plan_finished(plan), alone.is_finished(), "plan {plan}");
+            for i in 0..2 {
+                let (together, alone) = (batch.arm(plan, i), alone.arm(i));
+                assert_eq!(together.positions, alone.positions, "plan {plan}");
+                assert_eq!(together.velocities, alone.velocities, "plan {plan}");
+                assert_eq!((together.error, together.damped), (alone.error, alone.damped), "plan {plan}");
+            }
+        }
+    }
+    assert!(batch.stop(1).is_some() && batch.stop(0).is_none() && batch.index(2) == 60);
+    let together = run_together(cases.iter().map(make).collect());
+    for (together, case) in together.iter().zip(&cases) {
+        let alone = make(case).run();
+        assert_same(together, &alone);
+        for (a, b) in together.arms.iter().zip(&alone.arms) {
+            assert_eq!(a.violations, b.violations, "{}", a.name);
+            assert_eq!(
+                (a.max_error, a.max_error_component),
+                (b.max_error, b.max_error_component),
+                "{}",
+                a.name
+            );
+        }
+    }
+}
+
+#[test]
+fn a_plan_that_is_not_finite_stops_alone() {
+    use kinstep::task::PathPoint;
+    // One path jumps to infinity on its way.
+    let make = |breaks: bool| {
+        let (robot, base, tip, q) = PANDA;
+        let chain = embedded::get(robot).unwrap().chain(base, tip).unwrap();
+        let start = chain.forward(q, &mut chain.scratch()).pose();
+        let path = move |u: f64| PathPoint {
+            position: Vector3::new(0.05 * u, 0.0, 0.0),
+            tangent: Vector3::new(if breaks && u > 0.5 { f64::INFINITY } else { 0.05 }, 0.0, 0.0),
+        };
+        let motion = Motion::from_pose(path, Quintic, 1.0, &start);
+        let formula = FormulaTable::builtin().get("la6-wang-guo").unwrap();
+        let arm = Arm::new("arm", chain, q.to_vec(), TaskKind::Pose, motion);
+        Planner::builder().formula(formula).sigma(0.01).duration(1.0).gain(20.0).arm(arm).build().unwrap()
+    };
+    let plans = run_together(vec![make(false), make(true), make(false)]);
+    assert_eq!(plans[1].status.name(), "non_finite");
+    for (plan, breaks) in plans.iter().zip([false, true, false]) {
+        let alone = make(breaks).run();
+        assert_eq!(plan.is_completed(), !breaks);
+        // The last velocities of the one that broke are NaN, which equals nothing.
+        assert_eq!((plan.status, &plan.reason), (alone.status, &alone.reason));
+        assert_eq!(plan.arms[0].positions, alone.arms[0].positions);
+        assert_eq!(format!("{:?}", plan.arms[0].velocities), format!("{:?}", alone.arms[0].velocities));
+    }
 }

@@ -3,9 +3,10 @@
 use kinstep::formula::FormulaTable;
 use kinstep::math::GramCholesky;
 use kinstep::nalgebra::{IsometryMatrix3, Vector3, Vector6};
-use kinstep::planner::{Arm, Plan, Planner, Start, run_together};
-use kinstep::robot::{Chain, embedded};
+use kinstep::planner::{Arm, Batch, Plan, Planner, Start, run_together};
+use kinstep::robot::{Chain, DhTable, Robot, embedded};
 use kinstep::task::{Circle, Motion, Planar, Reference, Sin2, TaskKind};
+use std::f64::consts::FRAC_PI_2;
 use std::hint::black_box;
 use std::sync::Arc;
 
@@ -29,7 +30,7 @@ const STEPS: usize = 20_000;
 const SIGMA: f64 = 1e-3;
 
 /// Every work, in the order in which they are listed.
-pub(crate) const NAMES: [&str; 13] = [
+pub(crate) const NAMES: [&str; 14] = [
     "kinematics ur5e",
     "kinematics panda",
     "kinematics iiwa14",
@@ -41,11 +42,12 @@ pub(crate) const NAMES: [&str; 13] = [
     "step 8 pandas",
     "step 2 pandas, path computed",
     "step 2 pandas, split-ab6",
+    "step 4 plans",
     "4 plans, one by one",
     "4 plans, together",
 ];
 
-/// Returns the work of that name.
+/// Returns the work of that name; besides those that are listed, `arms N` and `joints N` show what a step costs by size.
 pub(crate) fn by_name(name: &str) -> Option<Work> {
     Some(match name {
         "solve" => solve(),
@@ -55,10 +57,41 @@ pub(crate) fn by_name(name: &str) -> Option<Work> {
         "step 8 pandas" => steps(8, "la6-wang-guo", 0.4, true),
         "step 2 pandas, path computed" => steps(2, "la6-wang-guo", 0.4, false),
         "step 2 pandas, split-ab6" => steps(2, "split-ab6", 1.0, true),
+        "step 4 plans" => batch(4),
         "4 plans, one by one" => plans(|planners| planners.into_iter().map(Planner::run).collect()),
         "4 plans, together" => plans(run_together),
-        _ => kinematics(name.strip_prefix("kinematics ")?),
+        _ => by_size(name).or_else(|| name.strip_prefix("kinematics ").map(kinematics))?,
     })
+}
+
+/// A step of a number of Pandas, or of two arms with a number of joints.
+fn by_size(name: &str) -> Option<Work> {
+    let (what, number) = name.split_once(' ')?;
+    let number: usize = number.parse().ok()?;
+    match what {
+        "arms" => Some(steps(number, "la6-wang-guo", 0.4, true)),
+        "joints" => {
+            let (chain, q) = snake(number);
+            Some(stepped(plans_of(
+                vec![(chain.clone(), q.clone()), (chain, q)],
+                "la6-wang-guo",
+                0.4,
+                STEPS,
+                true,
+            )))
+        }
+        _ => None,
+    }
+}
+
+/// An arm of that many joints with axes at right angles.
+fn snake(joints: usize) -> (Chain, Vec<f64>) {
+    let mut table = DhTable::planar("snake", &vec![0.2; joints]);
+    for (i, row) in table.rows.iter_mut().enumerate().take(joints).skip(1) {
+        row.alpha = if i % 2 == 0 { -FRAC_PI_2 } else { FRAC_PI_2 };
+    }
+    let robot = Robot::from_dh(&table).expect("a table without fault");
+    (robot.chain("base", "tip").expect("the links of the table"), vec![0.5; joints])
 }
 
 fn arm(robot: &str) -> (Chain, &'static [f64]) {
@@ -103,7 +136,7 @@ fn circle(chain: &Chain, q: &[f64], steps: usize) -> Motion {
     Motion::from_pose(Planar::whole(Circle { radius: 0.05 }), Sin2, steps as f64 * SIGMA, &start)
 }
 
-/// Makes planners of Pandas on full-pose circles.
+/// Makes planners of Pandas side by side on full-pose circles.
 fn pandas(
     arms: usize,
     formula: &'static str,
@@ -111,16 +144,27 @@ fn pandas(
     steps: usize,
     is_sampled: bool,
 ) -> impl Fn() -> Planner {
+    let pandas = (0..arms).map(|i| panda(0.5 * i as f64)).map(|(chain, q)| (chain, q.to_vec()));
+    plans_of(pandas.collect(), formula, h, steps, is_sampled)
+}
+
+/// Makes planners of arms on full-pose circles.
+fn plans_of(
+    arms: Vec<(Chain, Vec<f64>)>,
+    formula: &'static str,
+    h: f64,
+    steps: usize,
+    is_sampled: bool,
+) -> impl Fn() -> Planner {
     let formula = FormulaTable::builtin().get(formula).expect("a row of the built-in table");
-    let pandas: Vec<_> = (0..arms).map(|i| panda(0.5 * i as f64)).collect();
     let sample = |motion: &Motion| (0..=steps).map(|n| motion.at(n as f64 * SIGMA)).collect();
     let samples: Vec<Arc<[Reference]>> =
-        pandas.iter().map(|(chain, q)| sample(&circle(chain, q, steps))).collect();
+        arms.iter().map(|(chain, q)| sample(&circle(chain, q, steps))).collect();
     move || {
-        let arms = pandas.iter().zip(&samples).enumerate().map(|(i, ((chain, q), samples))| {
+        let arms = arms.iter().zip(&samples).enumerate().map(|(i, ((chain, q), samples))| {
             let sampled = || Motion::sampled(Arc::clone(samples), SIGMA);
             let motion = if is_sampled { sampled() } else { circle(chain, q, steps) };
-            Arm::new(format!("arm {i}"), chain.clone(), q.to_vec(), TaskKind::Pose, motion)
+            Arm::new(format!("arm {i}"), chain.clone(), q.clone(), TaskKind::Pose, motion)
         });
         let builder = Planner::builder().formula(formula).sigma(SIGMA).duration(steps as f64 * SIGMA).h(h);
         builder.start(Start::Paper).arms(arms).build().expect("a plan within range")
@@ -129,7 +173,10 @@ fn pandas(
 
 /// One step: kinematics, Jacobians, errors, solves, checks and history.
 fn steps(arms: usize, formula: &'static str, h: f64, is_sampled: bool) -> Work {
-    let begin = pandas(arms, formula, h, STEPS, is_sampled);
+    stepped(pandas(arms, formula, h, STEPS, is_sampled))
+}
+
+fn stepped(begin: impl Fn() -> Planner + 'static) -> Work {
     let mut running = begin();
     Box::new(move || {
         if running.is_finished() {
@@ -137,6 +184,20 @@ fn steps(arms: usize, formula: &'static str, h: f64, is_sampled: bool) -> Work {
         }
         running.step();
         running.arm(0).positions[0]
+    })
+}
+
+/// One step of so many plans of two Pandas at once.
+fn batch(plans: usize) -> Work {
+    let begin = pandas(2, "la6-wang-guo", 0.4, STEPS, true);
+    let all = move || Batch::new((0..plans).map(|_| begin()));
+    let mut running = all();
+    Box::new(move || {
+        if running.is_finished() {
+            running = all();
+        }
+        running.step();
+        running.arm(0, 0).positions[0]
     })
 }
 

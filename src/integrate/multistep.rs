@@ -3,6 +3,7 @@ use super::runge_kutta::RungeKutta;
 use super::weights::Weights;
 use super::{Field, Parts, Scalar, Starter, Tableau};
 use crate::formula::{Formula, NotRunnable};
+use fearless_simd::Level;
 use thiserror::Error;
 
 /// Why a stepper could not be made.
@@ -68,6 +69,7 @@ pub struct Multistep<T> {
     sigma: T,
     index: usize,
     status: Status,
+    level: Level,
 }
 
 impl<T: Scalar> Multistep<T> {
@@ -109,7 +111,8 @@ impl<T: Scalar> Multistep<T> {
         // While starting, low-order rows may look further back into f or g than the row itself does.
         let steps = formula.steps();
         let mut stepper = Self {
-            x: Ring::new(steps, dimension, T::zero()),
+            // One state more than a row of one step needs, for `previous`.
+            x: Ring::new(steps.max(2), dimension, T::zero()),
             f: Ring::new(start.depth(|w| &w.first).max(weights.first.len()), dimension, T::zero()),
             g: (field.parts() != Parts::One).then(|| {
                 Ring::new(start.depth(|w| &w.second).max(weights.second.len()), dimension, T::zero())
@@ -122,6 +125,7 @@ impl<T: Scalar> Multistep<T> {
             sigma,
             index: 0,
             status: Status::Running,
+            level: Level::new(),
         };
         stepper.x.push().copy_from_slice(x0);
         Ok(stepper)
@@ -135,6 +139,11 @@ impl<T: Scalar> Multistep<T> {
     /// The state `x_n`, to put in its place what was measured of it, before it is [evaluated](Self::evaluate).
     pub fn state_mut(&mut self) -> &mut [T] {
         self.x.newest_mut()
+    }
+
+    /// The state `x_(n-1)`; `x_0` itself at the start.
+    pub fn previous(&self) -> &[T] {
+        self.x.get(self.index.min(1))
     }
 
     /// The index `n` of the state.
@@ -176,13 +185,12 @@ impl<T: Scalar> Multistep<T> {
         if self.status != Status::Running {
             return self.status;
         }
-        if self.is_started() {
-            self.weights.combine(&self.x, &self.f, self.g.as_ref(), &mut self.next);
+        let all_finite = if self.is_started() {
+            self.weights.combine(self.level, &self.x, &self.f, self.g.as_ref(), &mut self.next)
         } else {
             self.advance_start(field);
-        }
-        // Every entry is looked at, whatever the others are: that is quicker than to stop early.
-        let all_finite = self.next.as_flattened().iter().fold(true, |all, entry| all & entry.is_finite());
+            self.next.as_flattened().iter().all(|entry| entry.is_finite())
+        };
         if all_finite {
             self.x.push_blocks().copy_from_slice(&self.next);
             self.index += 1;
@@ -205,7 +213,7 @@ impl<T: Scalar> Multistep<T> {
         let time = self.time();
         if let Start::Rows(rows) = &self.start {
             let row = &rows[self.index.min(rows.len() - 1)];
-            row.combine(&self.x, &self.f, self.g.as_ref(), &mut self.next);
+            row.combine(self.level, &self.x, &self.f, self.g.as_ref(), &mut self.next);
         }
         let next = &mut self.next.as_flattened_mut()[..field.dimension()];
         match &mut self.start {
@@ -219,7 +227,68 @@ impl<T: Scalar> Multistep<T> {
     }
 }
 
+/// Where a component comes from: the index of a stepper among several, and its index there.
+pub(crate) type Origin = (usize, usize);
+
+impl<T: Scalar> Multistep<T> {
+    /// Whether the other one goes on from the same instant in the same way, with components of its own.
+    pub(crate) fn is_in_step_with(&self, other: &Self) -> bool {
+        let instant = |stepper: &Self| (stepper.t0, stepper.sigma, stepper.index, stepper.status);
+        instant(self) == instant(other)
+            && self.weights == other.weights
+            && self.g.is_some() == other.g.is_some()
+            && self.start.is_like(&other.start)
+    }
+
+    /// A stepper that goes on from the histories of others that are [in step](Self::is_in_step_with): every component
+    /// comes from one of theirs, or is zero. `None` without a stepper to come from.
+    pub(crate) fn gathered(steppers: &[&Self], origins: &[Option<Origin>]) -> Option<Self> {
+        let first = *steppers.first()?;
+        let ring = |pick: fn(&Self) -> Option<&Ring<T>>| {
+            let rings: Option<Vec<_>> = steppers.iter().map(|stepper| pick(stepper)).collect();
+            rings.map(|rings| Ring::gathered(&rings, origins, T::zero()))
+        };
+        let starts: Vec<_> = steppers.iter().map(|stepper| &stepper.start).collect();
+        Some(Self {
+            weights: first.weights.clone(),
+            start: Start::gathered(&starts, origins),
+            x: ring(|stepper| Some(&stepper.x))?,
+            f: ring(|stepper| Some(&stepper.f))?,
+            g: ring(|stepper| stepper.g.as_ref()),
+            next: vec![[T::zero(); BLOCK]; origins.len().div_ceil(BLOCK)],
+            status: Status::Running,
+            ..*first
+        })
+    }
+
+    /// The components in which the last step was not finite, if it was not.
+    pub(crate) fn not_finite(&self) -> impl Iterator<Item = usize> {
+        let next = self.next.as_flattened().iter().enumerate();
+        next.filter(|(_, entry)| self.status == Status::NonFinite && !entry.is_finite()).map(|(i, _)| i)
+    }
+}
+
 impl<T: Scalar> Start<T> {
+    fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Rows(own), Self::Rows(others)) => own == others,
+            (Self::RungeKutta(own), Self::RungeKutta(others)) => own.is_like(others),
+            (Self::Given(own), Self::Given(others)) => own.len() == others.len(),
+            _ => false,
+        }
+    }
+
+    /// The start of components that come from several, of one kind.
+    fn gathered(starts: &[&Self], origins: &[Option<Origin>]) -> Self {
+        match starts[0] {
+            Self::Rows(rows) => Self::Rows(rows.clone()),
+            Self::RungeKutta(method) => Self::RungeKutta(method.for_dimension(origins.len())),
+            Self::Given(states) => {
+                Self::Given((0..states.len()).map(|k| gathered_state(starts, k, origins)).collect())
+            }
+        }
+    }
+
     fn new(
         formula: &Formula,
         starter: &Starter<T>,
@@ -259,6 +328,15 @@ impl<T: Scalar> Start<T> {
             _ => 1,
         }
     }
+}
+
+/// The given state `k` of components that come from several starts.
+fn gathered_state<T: Scalar>(starts: &[&Start<T>], k: usize, origins: &[Option<Origin>]) -> Vec<T> {
+    let entry = |origin: &Option<Origin>| match origin.map(|(which, i)| (starts[which], i)) {
+        Some((Start::Given(states), i)) => states[k][i],
+        _ => T::zero(),
+    };
+    origins.iter().map(entry).collect()
 }
 
 fn check_length<T>(what: &str, vector: &[T], expected: usize) -> Result<(), IntegrateError> {

@@ -17,7 +17,20 @@ impl<T: Copy> Ring<T> {
         Self { samples: vec![[zero; BLOCK]; capacity * blocks], dimension, blocks, capacity, newest: 0 }
     }
 
+    /// A ring of components that come from several rings of one capacity; see [`Origin`](super::multistep::Origin).
+    pub(super) fn gathered(rings: &[&Self], origins: &[Option<(usize, usize)>], zero: T) -> Self {
+        let capacity = rings.first().map_or(0, |ring| ring.capacity);
+        let mut gathered = Self::new(capacity, origins.len(), zero);
+        for age in (0..capacity).rev() {
+            for (entry, origin) in gathered.push().iter_mut().zip(origins) {
+                *entry = origin.map_or(zero, |(ring, i)| rings[ring].get(age)[i]);
+            }
+        }
+        gathered
+    }
+
     /// The sample `age` steps before the newest; `age` is below the capacity.
+    #[inline]
     pub(super) fn get(&self, age: usize) -> &[T] {
         &self.blocks(age).as_flattened()[..self.dimension]
     }

@@ -4,7 +4,7 @@ use crate::math::Rational;
 /// An explicit Runge-Kutta tableau, used to start multistep rows.
 ///
 /// `k_i = f(t + c_i sigma, x + sigma sum_{j<i} a_ij k_j)`, `x_next = x + sigma sum_i b_i k_i`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Tableau<T> {
     /// Row `i` holds `a_ij` for `j < i`; the first row is empty.
     pub a: Vec<Vec<T>>,
@@ -112,6 +112,17 @@ impl<T: Scalar> RungeKutta<T> {
             second: vec![T::zero(); second],
             tableau,
         }
+    }
+
+    /// Whether the other one is the same method.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        self.tableau == other.tableau && self.second.is_empty() == other.second.is_empty()
+    }
+
+    /// The same method for states of another length.
+    pub(super) fn for_dimension(&self, dimension: usize) -> Self {
+        let parts = if self.second.is_empty() { Parts::One } else { Parts::Additive };
+        Self::new(self.tableau.clone(), dimension, parts)
     }
 
     /// Writes the state one `sigma` after `x` at time `t`; `f` and `g` are the parts already known at `(t, x)`.

@@ -1,13 +1,14 @@
 use super::Scalar;
 use super::ring::{BLOCK, Ring};
 use crate::formula::Formula;
-use crate::math::Rational;
+use crate::math::{Kernel, Rational, with_instructions};
+use fearless_simd::{Level, Simd};
 
 /// A row as the stepper uses it: what multiplies the known states and evaluations, newest first.
 ///
 /// `x_{n+1} = sum_j state_j x_{n-j} + sum_j first_j f_{n-j} + sum_j second_j g_{n-j}` with `sum_j state_j = 1`, trailing zeros
 /// cut off.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Weights<T> {
     pub(super) state: Vec<T>,
     pub(super) first: Vec<T>,
@@ -43,43 +44,75 @@ impl<T: Scalar> Weights<T> {
         Self { state: cut(alpha, -T::one()), first: cut(beta, sigma), second: cut(gamma, sigma * feedback) }
     }
 
-    /// Writes `x_{n+1}`. The small terms are added first: they lose least that way.
+    /// Writes `x_{n+1}` and returns whether all of it is finite. The small terms are added first: they lose least that way.
     ///
     /// The weights of the states sum to one in every consistent row, but not once they are rounded; what is missing would
     /// push every step the same way. So older states enter by their differences from the newest.
-    pub(super) fn combine(&self, x: &Ring<T>, f: &Ring<T>, g: Option<&Ring<T>>, next: &mut [[T; BLOCK]]) {
+    pub(super) fn combine(
+        &self,
+        level: Level,
+        x: &Ring<T>,
+        f: &Ring<T>,
+        g: Option<&Ring<T>>,
+        next: &mut [[T; BLOCK]],
+    ) -> bool {
+        with_instructions(level, Combination { weights: self, x, f, g, next })
+    }
+}
+
+/// One combination of the history. Its loops over blocks are written so that the compiler finds the vectors in them.
+struct Combination<'a, T> {
+    weights: &'a Weights<T>,
+    x: &'a Ring<T>,
+    f: &'a Ring<T>,
+    g: Option<&'a Ring<T>>,
+    next: &'a mut [[T; BLOCK]],
+}
+
+impl<T: Scalar> Kernel for Combination<'_, T> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) -> bool {
+        let Self { weights, x, f, g, next } = self;
+        next.fill([T::zero(); BLOCK]);
+        if let Some(g) = g {
+            add(&weights.second, g, next);
+        }
+        add(&weights.first, f, next);
         let newest = x.blocks(0);
-        for (block, (next, newest)) in next.iter_mut().zip(newest).enumerate() {
-            let mut sum = [T::zero(); BLOCK];
-            if let Some(g) = g {
-                add(&self.second, g, block, &mut sum);
-            }
-            add(&self.first, f, block, &mut sum);
-            for (age, &weight) in self.state.iter().enumerate().skip(1) {
-                if weight == T::zero() {
-                    continue;
-                }
-                let sample = &x.blocks(age)[block];
+        for (age, weight) in used(&weights.state).skip_while(|&(age, _)| age == 0) {
+            for ((sum, sample), newest) in next.iter_mut().zip(x.blocks(age)).zip(newest) {
                 for i in 0..BLOCK {
                     sum[i] += weight * (sample[i] - newest[i]);
                 }
             }
-            for i in 0..BLOCK {
-                next[i] = sum[i] + newest[i];
-            }
         }
+        let mut all_finite = true;
+        for (sum, newest) in next.iter_mut().zip(newest) {
+            for i in 0..BLOCK {
+                sum[i] += newest[i];
+            }
+            // Every entry is looked at, whatever the others are: that is quicker than to stop early.
+            all_finite &= sum.iter().fold(true, |all, entry| all & entry.is_finite());
+        }
+        all_finite
     }
 }
 
+/// The weights that are not zero, with the ages of their samples.
 #[inline(always)]
-fn add<T: Scalar>(weights: &[T], ring: &Ring<T>, block: usize, sum: &mut [T; BLOCK]) {
-    for (age, &weight) in weights.iter().enumerate() {
-        if weight == T::zero() {
-            continue;
-        }
-        let sample = &ring.blocks(age)[block];
-        for i in 0..BLOCK {
-            sum[i] += weight * sample[i];
+fn used<T: Scalar>(weights: &[T]) -> impl Iterator<Item = (usize, T)> {
+    weights.iter().copied().enumerate().filter(|&(_, weight)| weight != T::zero())
+}
+
+#[inline(always)]
+fn add<T: Scalar>(weights: &[T], ring: &Ring<T>, sums: &mut [[T; BLOCK]]) {
+    for (age, weight) in used(weights) {
+        for (sum, sample) in sums.iter_mut().zip(ring.blocks(age)) {
+            for i in 0..BLOCK {
+                sum[i] += weight * sample[i];
+            }
         }
     }
 }

@@ -10,18 +10,18 @@ pub(crate) struct LeastNorm<V> {
 
 /// Gives `write` for every column the entries of `J^T (J J^T)^-1 v` and `J^T (J J^T)^-1 w`.
 ///
-/// `J` has `joints` columns of `M` entries, which `entry(column, row)` reads; every lane holds a Jacobian of its own.
+/// `J` has columns whose entries `entry(column, row)` reads, of which `M` count; every lane holds a Jacobian of its own.
 #[inline(always)]
-pub(crate) fn least_norm<V: Lanes, const M: usize>(
+pub(crate) fn least_norm<V: Lanes, C, const M: usize>(
     token: V::Token,
-    joints: usize,
-    entry: impl Fn(usize, usize) -> V + Copy,
+    columns: &[C],
+    entry: impl Fn(&C, usize) -> V + Copy,
     [v, w]: [&[V; M]; 2],
     mut write: impl FnMut(usize, V, V),
 ) -> LeastNorm<V> {
-    let factor = LaneFactor::<V, M>::of(token, joints, entry);
+    let factor = LaneFactor::<V, M>::of(token, columns, entry);
     let (y, z) = (factor.solve(v), factor.solve(w));
-    for column in 0..joints {
+    for (place, column) in columns.iter().enumerate() {
         let first = entry(column, 0);
         let (mut forward, mut back) = (first * y[0], first * z[0]);
         for row in 1..M {
@@ -29,7 +29,7 @@ pub(crate) fn least_norm<V: Lanes, const M: usize>(
             forward = forward + entry * y[row];
             back = back + entry * z[row];
         }
-        write(column, forward, back);
+        write(place, forward, back);
     }
     LeastNorm { bound: factor.smallest_singular_value_bound(), smallest_pivot: factor.smallest_pivot }
 }

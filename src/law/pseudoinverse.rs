@@ -145,8 +145,8 @@ fn resolve_regular<const M: usize>(
     let velocities = [&wanted, &head::<M>(demand.feedback)];
     let found = least_norm(
         (),
-        jacobian.len(),
-        |column, row| jacobian[column][row],
+        jacobian,
+        |column, row| column[row],
         velocities,
         |column, forward, back| {
             f[column] = homogeneous.map_or(forward, |c| c[column] + forward);

@@ -16,7 +16,7 @@ impl<const M: usize> GramCholesky<M> {
     /// `None` when a pivot is not positive: the rows are dependent to working precision, or not finite.
     #[inline]
     pub fn new(columns: &[Vector6<f64>]) -> Option<Self> {
-        let factor = LaneFactor::of((), columns.len(), |column, row| columns[column][row]);
+        let factor = LaneFactor::of((), columns, |column, row| column[row]);
         let is_definite = factor.smallest_pivot > 0.0 && factor.trace_of_inverse().is_finite();
         is_definite.then_some(Self { factor })
     }
@@ -65,14 +65,16 @@ macro_rules! rows {
 }
 
 impl<V: Lanes, const M: usize> LaneFactor<V, M> {
-    /// Factorises `J J^T` for the `J` of `joints` columns that `entry(column, row)` reads.
+    /// Factorises `J J^T` for the `J` of whose columns `entry(column, row)` reads the entries.
     #[inline(always)]
-    pub(crate) fn of(token: V::Token, joints: usize, entry: impl Fn(usize, usize) -> V) -> Self {
+    pub(crate) fn of<C>(token: V::Token, columns: &[C], entry: impl Fn(&C, usize) -> V) -> Self {
         const { assert!(M > 0 && M <= MOST_ROWS) };
         let zero = V::splat(token, 0.0);
         let mut factor =
             Self { lower: [[zero; M]; M], inverse_pivots: [zero; M], smallest_pivot: zero.like(f64::MAX) };
-        rows!(M, I, factor_row::<V, M, I>(&mut factor, joints, &entry));
+        add_products::<V, C, M, true>(&mut factor.lower, columns, &entry);
+        add_products::<V, C, M, false>(&mut factor.lower, columns, &entry);
+        rows!(M, I, factor_row::<V, M, I>(&mut factor));
         factor
     }
 
@@ -103,21 +105,40 @@ impl<V: Lanes, const M: usize> LaneFactor<V, M> {
         trace
     }
 }
-/// Row `I` of `G`, then of the factors: `u_j = g_j - sum_(k<j) u_k l_jk` with `u = d l`.
+
+/// Adds up the products of rows of `J` on and below the diagonal of `G`: those of linear rows with linear ones and of angular
+/// rows with angular ones (`ALIKE`), or those of both kinds together. So many sums just find room in the registers.
 #[inline(always)]
-fn factor_row<V: Lanes, const M: usize, const I: usize>(
-    factor: &mut LaneFactor<V, M>,
-    joints: usize,
-    entry: &impl Fn(usize, usize) -> V,
+fn add_products<V: Lanes, C, const M: usize, const ALIKE: bool>(
+    lower: &mut [[V; M]; M],
+    columns: &[C],
+    entry: &impl Fn(&C, usize) -> V,
 ) {
-    let zero = factor.smallest_pivot.like(0.0);
-    let mut row = [zero; M];
-    for column in 0..joints {
-        let own = entry(column, I);
-        for j in 0..=I {
-            row[j] = row[j] + own * entry(column, j);
-        }
+    if !ALIKE && M <= 3 {
+        return;
     }
+    let mut sums = *lower;
+    for column in columns {
+        let mut entries = sums[0];
+        for row in 0..M {
+            entries[row] = entry(column, row);
+        }
+        rows!(M, I, {
+            rows!(M, J, {
+                if J <= I && (I / 3 == J / 3) == ALIKE {
+                    sums[I][J] = sums[I][J] + entries[I] * entries[J];
+                }
+            });
+        });
+    }
+    *lower = sums;
+}
+
+/// Row `I` of the factors, which stands in the place of that row of `G`: `u_j = g_j - sum_(k<j) u_k l_jk` with `u = d l`.
+#[inline(always)]
+fn factor_row<V: Lanes, const M: usize, const I: usize>(factor: &mut LaneFactor<V, M>) {
+    let zero = factor.smallest_pivot.like(0.0);
+    let mut row = factor.lower[I];
     let mut scaled = [zero; M];
     rows!(M, J, {
         if J <= I {
@@ -126,7 +147,9 @@ fn factor_row<V: Lanes, const M: usize, const I: usize>(
                 let other = if J == I { scaled[k] } else { factor.lower[J][k] };
                 row[J] = row[J] - row[k] * other;
             }
-            scaled[J] = row[J] * factor.inverse_pivots[J];
+            if J < I {
+                scaled[J] = row[J] * factor.inverse_pivots[J];
+            }
         }
     });
     factor.lower[I] = scaled;
@@ -150,7 +173,7 @@ fn substitute_back<V: Lanes, const M: usize, const I: usize>(factor: &LaneFactor
     }
 }
 
-/// Row `I` of `L^-1` below the diagonal, and its part of the trace.
+/// Row `I` of `-L^-1` below the diagonal, and its part of the trace.
 #[inline(always)]
 fn invert_row<V: Lanes, const M: usize, const I: usize>(
     factor: &LaneFactor<V, M>,
@@ -160,7 +183,7 @@ fn invert_row<V: Lanes, const M: usize, const I: usize>(
     let mut squares = trace.like(1.0);
     rows!(M, J, {
         if J < I {
-            let mut entry = -factor.lower[I][J];
+            let mut entry = factor.lower[I][J];
             for k in J + 1..I {
                 entry = entry - factor.lower[I][k] * inverse[k][J];
             }

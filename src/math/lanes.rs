@@ -43,6 +43,17 @@ pub(crate) trait Lanes:
     /// The smaller of the two; either when one is NaN.
     fn least(self, other: Self) -> Self;
 
+    /// The larger of the two; either when one is NaN.
+    fn greatest(self, other: Self) -> Self;
+
+    fn abs(self) -> Self;
+
+    /// `then` in the lanes where `a` is less than `b`, `other` elsewhere.
+    fn where_less(a: Self, b: Self, then: Self, other: Self) -> Self;
+
+    /// Whether every lane is at least that of `other`; not so with a NaN.
+    fn all_at_least(self, other: Self) -> bool;
+
     /// `zero` in the lanes where `flag` is zero, `other` elsewhere.
     fn pick(flag: Self, zero: Self, other: Self) -> Self;
 
@@ -64,6 +75,9 @@ pub(crate) trait LaneArray: Copy + Debug + AsRef<[f64]> + AsMut<[f64]> + Send {
     const ZERO: Self;
 
     fn each<T: Copy>(value: impl FnMut(usize) -> T) -> Self::Of<T>;
+
+    /// Reals that lie one after the other, as whole arrays.
+    fn arrays(reals: &[f64]) -> &[Self];
 }
 
 impl LaneArray for [f64; 2] {
@@ -76,6 +90,11 @@ impl LaneArray for [f64; 2] {
     fn each<T: Copy>(value: impl FnMut(usize) -> T) -> [T; 2] {
         std::array::from_fn(value)
     }
+
+    #[inline(always)]
+    fn arrays(reals: &[f64]) -> &[Self] {
+        reals.as_chunks().0
+    }
 }
 
 impl LaneArray for [f64; 4] {
@@ -87,6 +106,11 @@ impl LaneArray for [f64; 4] {
     #[inline(always)]
     fn each<T: Copy>(value: impl FnMut(usize) -> T) -> [T; 4] {
         std::array::from_fn(value)
+    }
+
+    #[inline(always)]
+    fn arrays(reals: &[f64]) -> &[Self] {
+        reals.as_chunks().0
     }
 }
 
@@ -143,6 +167,26 @@ impl Lanes for f64 {
     #[inline(always)]
     fn least(self, other: Self) -> Self {
         if self < other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn greatest(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+
+    #[inline(always)]
+    fn where_less(a: Self, b: Self, then: Self, other: Self) -> Self {
+        if a < b { then } else { other }
+    }
+
+    #[inline(always)]
+    fn all_at_least(self, other: Self) -> bool {
+        self >= other
     }
 
     #[inline(always)]
@@ -215,7 +259,28 @@ macro_rules! vector_lanes {
 
             #[inline(always)]
             fn least(self, other: Self) -> Self {
-                self.simd_lt(other).select(self, other)
+                self.min(other)
+            }
+
+            #[inline(always)]
+            fn greatest(self, other: Self) -> Self {
+                self.max(other)
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                <Self as SimdBase<S>>::abs(self)
+            }
+
+            #[inline(always)]
+            fn where_less(a: Self, b: Self, then: Self, other: Self) -> Self {
+                a.simd_lt(b).select(then, other)
+            }
+
+            #[inline(always)]
+            fn all_at_least(self, other: Self) -> bool {
+                use fearless_simd::SimdMask;
+                self.simd_ge(other).all_true()
             }
 
             #[inline(always)]
@@ -231,7 +296,7 @@ macro_rules! vector_lanes {
             #[inline(always)]
             fn all_within(self, bound: f64) -> bool {
                 use fearless_simd::SimdMask;
-                (self.simd_lt(self.like(bound)) & self.like(-bound).simd_lt(self)).all_true()
+                Lanes::abs(self).simd_lt(self.like(bound)).all_true()
             }
         }
     };

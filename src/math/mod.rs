@@ -55,6 +55,6 @@ pub(crate) use rational::{common_denominator, shortened};
 pub(crate) use real::Real;
 pub(crate) use rotation::{relative_rotation, small_rotation_vector};
 pub(crate) use routh::{half_plane_image, last_hurwitz_determinant};
-pub(crate) use sin_cos::sines_and_cosines;
+pub(crate) use sin_cos::{sines_and_cosines, sines_and_cosines_of};
 pub(crate) use singular::RowRotations;
 pub(crate) use wide::Wide;

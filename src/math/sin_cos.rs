@@ -45,21 +45,39 @@ pub(crate) fn sines_and_cosines<V: Lanes>(
             #[inline(always)]
             |lane| angle(chunk * V::WIDTH + lane),
         );
-        if x.all_within(FARTHEST) {
-            let (sine, cosine) = sin_cos(x);
-            sine.store_slice(sines);
-            cosine.store_slice(cosines);
-        } else {
-            let angles = (chunk * V::WIDTH..(chunk + 1) * V::WIDTH).map(&angle);
-            one_by_one(angles, sines, cosines);
-        }
+        write(x, sines, cosines);
+    }
+}
+
+/// The same for angles that lie one after the other; what does not fill the last vector is left alone.
+#[inline(always)]
+pub(crate) fn sines_and_cosines_of<V: Lanes>(
+    token: V::Token,
+    angles: &[f64],
+    sines: &mut [f64],
+    cosines: &mut [f64],
+) {
+    let out = sines.chunks_exact_mut(V::WIDTH).zip(cosines.chunks_exact_mut(V::WIDTH));
+    for (angles, (sines, cosines)) in angles.chunks_exact(V::WIDTH).zip(out) {
+        write(V::load_slice(token, angles), sines, cosines);
+    }
+}
+
+#[inline(always)]
+fn write<V: Lanes>(x: V, sines: &mut [f64], cosines: &mut [f64]) {
+    if x.all_within(FARTHEST) {
+        let (sine, cosine) = sin_cos(x);
+        sine.store_slice(sines);
+        cosine.store_slice(cosines);
+    } else {
+        one_by_one(x.to_array().as_ref(), sines, cosines);
     }
 }
 
 /// Angles too large for [`sin_cos`], and those that are not finite.
 #[cold]
-fn one_by_one(angles: impl Iterator<Item = f64>, sines: &mut [f64], cosines: &mut [f64]) {
-    for ((angle, sine), cosine) in angles.zip(sines).zip(cosines) {
+fn one_by_one(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
+    for ((&angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
         (*sine, *cosine) = if angle.abs() < FARTHEST { sin_cos(angle) } else { angle.sin_cos() };
     }
 }
@@ -95,8 +113,7 @@ fn into_quadrant<V: Lanes>(turns: V, sine: V, cosine: V) -> (V, V) {
     let pairs = (turns * half).floor();
     let odd = turns - two * pairs;
     let sign = one - two * (pairs - two * (pairs * half).floor());
-    let cosine_sign = sign * (one - two * odd);
-    (V::pick(odd, sine, cosine) * sign, V::pick(odd, cosine, sine) * cosine_sign)
+    (V::pick(odd, sine, cosine) * sign, V::pick(odd, cosine, -sine) * sign)
 }
 
 #[cfg(test)]

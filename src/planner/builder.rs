@@ -1,8 +1,10 @@
-use super::field::SynchronousField;
+use super::bundle::Sample;
+use super::field::{Owner, SynchronousField};
+use super::fleet::Description;
 use super::shared::{self, SharedArms};
 use super::{Arm, Noise, Planner, PlannerError};
 use crate::formula::{Formula, FormulaTable};
-use crate::integrate::{Multistep, Starter};
+use crate::integrate::{IntegrateError, Multistep, Starter};
 use num_traits::ToPrimitive;
 use std::collections::HashSet;
 
@@ -176,13 +178,22 @@ impl PlannerBuilder {
         warn_about_start(formula, &starter, steps, &mut warnings);
         warnings.extend(self.arms.iter().filter_map(too_few_joints));
 
-        let mut field = SynchronousField::new(self.arms, h / (sigma * gamma_sum));
+        let gain = h / (sigma * gamma_sum);
+        let noise = Some(self.noise).filter(|noise| !noise.is_silent());
+        let mut field = match noise {
+            None => SynchronousField::new(self.arms, gain, sigma),
+            Some(_) => SynchronousField::one_by_one(self.arms, gain, sigma),
+        };
         check_criteria(formula, &field, sigma)?;
         warnings.extend(field.shared.iter().filter_map(|shared| too_few_shared(shared, &field)));
-        let mut stepper = Multistep::new(formula, &starter, &field, 0.0, sigma, &field.initial())?;
+        let starter = laid_out(starter, &field)?;
+        let initial = field.state(|(arm, joint)| field.arms[arm].arm.q0[joint]);
+        let mut stepper = Multistep::new(formula, &starter, &field, 0.0, sigma, &initial)?;
         stepper.evaluate(&mut field);
+        let (state, velocities) = (stepper.state(), stepper.derivative());
+        field.tell(&Sample { positions: state, previous: state, velocities });
         check_path_starts(&field)?;
-        let description = super::run::Description {
+        let description = Description {
             formula: formula.id().to_owned(),
             sigma,
             h,
@@ -191,8 +202,7 @@ impl PlannerBuilder {
             steps,
             warnings,
         };
-        let planner = Planner::begin(description, stepper, field);
-        Ok(if self.noise.is_silent() { planner } else { planner.with_noise(self.noise) })
+        Ok(Planner::begin(description, stepper, field, noise))
     }
 
     fn check_arms(&self) -> Result<(), PlannerError> {
@@ -277,6 +287,40 @@ impl PlannerBuilder {
             .push(format!("h = {h} lies outside the feedback range {range} of formula `{id}`, as allowed"));
         Ok(h)
     }
+}
+
+/// A start with given states, in the order of the field's components.
+fn laid_out(starter: Starter<f64>, field: &SynchronousField) -> Result<Starter<f64>, IntegrateError> {
+    let Starter::Given(states) = starter else { return Ok(starter) };
+    let joints = joints_in_order(field);
+    let lay_out = |(k, state): (usize, Vec<f64>)| {
+        if state.len() != joints.len() {
+            let (what, expected) = (format!("starting state {}", k + 1), joints.len());
+            return Err(IntegrateError::Dimension { what, got: state.len(), expected });
+        }
+        let place = |owner: Owner| joints.iter().position(|joint| joint.contains(&owner));
+        Ok(field.state(|owner| place(owner).map_or(0.0, |place| state[place])))
+    };
+    Ok(Starter::Given(states.into_iter().enumerate().map(lay_out).collect::<Result<_, _>>()?))
+}
+
+/// The joints of all arms one after the other, each with all that it is called: one that is shared belongs to several arms.
+fn joints_in_order(field: &SynchronousField) -> Vec<Vec<Owner>> {
+    let mut in_order: Vec<Vec<Owner>> = Vec::new();
+    let mut listed = vec![false; field.arms.len()];
+    for arm in 0..field.arms.len() {
+        if std::mem::replace(&mut listed[arm], true) {
+            continue;
+        }
+        match field.shared.iter().find(|shared| shared.arms().any(|member| member == arm)) {
+            None => in_order.extend((0..field.arms[arm].positions.len()).map(|joint| vec![(arm, joint)])),
+            Some(shared) => {
+                in_order.extend(shared.owners());
+                shared.arms().for_each(|arm| listed[arm] = true);
+            }
+        }
+    }
+    in_order
 }
 
 fn check_feedback(what: &'static str, value: f64) -> Result<(), PlannerError> {

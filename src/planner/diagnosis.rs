@@ -1,6 +1,6 @@
 //! Why a run near a singularity stopped: is the place it should go to within reach at all?
 
-use super::field::ArmRuntime;
+use super::runtime::ArmRuntime;
 use crate::inverse::{Search, Target};
 use crate::task::Reference;
 

@@ -1,290 +1,218 @@
 use super::Arm;
-use super::bundle::Bundle;
-use super::noise::Disturbance;
+use super::bundle::{Bundle, Sample, Together, are_alike};
+use super::runtime::ArmRuntime;
 use super::shared::{self, SharedArms};
 use crate::integrate::{Field, Parts};
-use crate::law::{Demand, Resolution};
-use crate::math::LaneArray;
-use crate::robot::ChainScratch;
 use fearless_simd::Level;
-use nalgebra::Vector6;
 
-/// An arm with its scratch memory and what the last evaluation found.
-pub(super) struct ArmRuntime {
-    pub(super) arm: Arm,
-    /// The chain's reach, or a metre where that is infinite.
-    pub(super) length: f64,
-    scratch: ChainScratch,
-    pub(super) columns: Vec<Vector6<f64>>,
-    pub(super) error: Vector6<f64>,
-    pub(super) resolution: Resolution,
-    /// What the loop sees in place of the truth; nothing but the truth without noise.
-    pub(super) disturbance: Option<Disturbance>,
-    /// Whether it shares joints with other arms.
-    pub(super) is_shared: bool,
-    /// Whether there are fewer joints than task components, its own or those of all arms that it shares joints with.
-    pub(super) has_too_few_joints: bool,
-}
+/// What a component of the state is: an arm and a joint of it.
+pub(super) type Owner = (usize, usize);
 
-impl ArmRuntime {
-    pub(super) fn new(mut arm: Arm) -> Self {
-        let joints = arm.chain.dof();
-        let reach = arm.chain.reach();
-        let length = if reach.is_finite() { reach } else { 1.0 };
-        arm.law.prepare(arm.task.rows(), joints, length);
-        Self {
-            scratch: arm.chain.scratch(),
-            columns: vec![Vector6::zeros(); joints],
-            error: Vector6::zeros(),
-            resolution: Resolution { smallest_singular_value: f64::INFINITY, damped: false },
-            disturbance: None,
-            is_shared: false,
-            has_too_few_joints: joints < arm.task.rows(),
-            arm,
-            length,
-        }
-    }
+/// Vectors of four fit wherever a group begins.
+const ALIGNMENT: usize = 4;
 
-    /// Forward kinematics, task error and both parts of the joint velocity at time `t`.
-    pub(super) fn evaluate(&mut self, t: f64, gain: f64, q: &[f64], f: &mut [f64], g: &mut [f64]) {
-        let twist = self.look(t, q);
-        let (twist, error) = self.measured(twist);
-        let demand = Demand {
-            rows: self.arm.task.rows(),
-            jacobian: &self.columns,
-            q,
-            feedforward: &twist,
-            feedback: &(error * -gain),
-        };
-        self.resolution = self.arm.law.resolve(&demand, f, g);
-    }
-
-    /// The twist of the reference and the task error as the loop sees them.
-    pub(super) fn measured(&self, twist: Vector6<f64>) -> (Vector6<f64>, Vector6<f64>) {
-        match &self.disturbance {
-            None => (twist, self.error),
-            Some(noise) => (twist + noise.twist, self.error + noise.error),
-        }
-    }
-
-    /// Forward kinematics, Jacobian and task error at time `t`; returns the twist of the reference.
-    pub(super) fn look(&mut self, t: f64, q: &[f64]) -> Vector6<f64> {
-        let posed = self.arm.chain.forward(q, &mut self.scratch);
-        posed.geometric_jacobian(&mut self.columns);
-        let reference = self.arm.motion.at(t);
-        self.error = self.arm.task.error(&posed.pose(), &reference);
-        reference.twist
-    }
-}
-
-/// The right-hand side of all arms together: `f = J^+ phi'` (and the null-space part), `g = -k J^+ e`, block by block.
+/// The right-hand side of all arms together: `f = J^+ phi'` (and the null-space part), `g = -k J^+ e`, group by group.
+///
+/// A group of arms side by side has its part of the state joint by joint, all arms of each joint one after the other, so that
+/// the state, its history and both parts of its derivative are vectors as they lie.
 pub(super) struct SynchronousField {
     pub(super) arms: Vec<ArmRuntime>,
     pub(super) gain: f64,
-    pub(super) dimension: usize,
-    /// Where the joints of each arm are found.
-    places: Vec<Place>,
     groups: Vec<Group>,
     pub(super) shared: Vec<SharedArms>,
+    /// What the components of the state are; some only fill up a group.
+    owners: Vec<Option<Owner>>,
     level: Level,
-}
-
-/// Where the joints of an arm stand.
-#[derive(Clone, Copy, Debug)]
-enum Place {
-    /// In the state, from here on.
-    From(usize),
-    /// With a member of a set of arms that share joints.
-    Shared { set: usize, member: usize },
-}
-
-/// An arm that shares no joints.
-#[derive(Clone, Copy, Debug)]
-struct Member {
-    arm: usize,
-    /// Index of its first joint in the state.
-    from: usize,
 }
 
 /// Arms that share no joints and are evaluated together.
 struct Group {
-    members: Vec<Member>,
-    lanes: Lanes,
+    /// Where its part of the state begins.
+    from: usize,
+    arms: Members,
 }
 
-/// How the arms of a group are evaluated.
-enum Lanes {
+enum Members {
     /// A single arm whose law or chain is of no common kind.
-    None,
-    /// Side by side.
-    Two(Box<Bundle<[f64; 2]>>),
-    Four(Box<Bundle<[f64; 4]>>),
+    Alone(usize),
+    SideBySide(Box<dyn Together>),
 }
 
 impl SynchronousField {
-    pub(super) fn new(arms: Vec<Arm>, gain: f64) -> Self {
-        let sets = shared::sets(&arms);
-        let arms: Vec<_> = arms.into_iter().map(ArmRuntime::new).collect();
-        let places = vec![Place::From(0); arms.len()];
-        let mut field = Self {
-            arms,
-            gain,
-            dimension: 0,
-            places,
-            groups: Vec::new(),
-            shared: Vec::new(),
-            level: Level::new(),
-        };
-        let mut apart = Vec::new();
-        for arm in 0..field.arms.len() {
-            match sets.iter().find(|set| set.contains(&arm)) {
-                Some(set) if set[0] == arm => field.add_shared(set),
-                Some(_) => {}
-                None => {
-                    field.places[arm] = Place::From(field.dimension);
-                    apart.push(Member { arm, from: field.dimension });
-                    field.dimension += field.arms[arm].arm.chain.dof();
-                }
-            }
-        }
-        field.groups = grouped(&field.arms, apart);
+    /// The right-hand side of the arms of one plan, with gap `sigma`.
+    pub(super) fn new(arms: Vec<Arm>, gain: f64, sigma: f64) -> Self {
+        let (mut field, apart) = Self::of_shared(arms, gain, sigma);
+        field.add_groups(apart);
         field
     }
 
+    /// The same with every arm evaluated by itself.
+    pub(super) fn one_by_one(arms: Vec<Arm>, gain: f64, sigma: f64) -> Self {
+        let (mut field, apart) = Self::of_shared(arms, gain, sigma);
+        apart.into_iter().for_each(|arm| field.add_members(&[arm], Members::Alone(arm)));
+        field
+    }
+
+    /// The right-hand side of the arms that share joints, and which others there are.
+    fn of_shared(arms: Vec<Arm>, gain: f64, sigma: f64) -> (Self, Vec<usize>) {
+        let sets = shared::sets(&arms);
+        let arms = arms.into_iter().map(|arm| ArmRuntime::new(arm, sigma)).collect();
+        let mut field = Self::without_groups(arms, gain);
+        for set in &sets {
+            field.add_shared(set);
+        }
+        let apart = (0..field.arms.len()).filter(|&arm| !field.arms[arm].is_shared).collect();
+        (field, apart)
+    }
+
+    /// The right-hand side of arms of which those of the indices `moving` move; none of them share joints.
+    pub(super) fn of_moving(arms: Vec<ArmRuntime>, moving: Vec<usize>, gain: f64) -> Self {
+        let mut field = Self::without_groups(arms, gain);
+        field.add_groups(moving);
+        field
+    }
+
+    fn without_groups(arms: Vec<ArmRuntime>, gain: f64) -> Self {
+        Self { arms, gain, groups: Vec::new(), shared: Vec::new(), owners: Vec::new(), level: Level::new() }
+    }
+
     fn add_shared(&mut self, arms: &[usize]) {
-        let shared = SharedArms::new(&self.arms, arms, self.dimension);
-        self.dimension = shared.range().end;
-        for (member, &arm) in arms.iter().enumerate() {
-            self.places[arm] = Place::Shared { set: self.shared.len(), member };
+        let shared = SharedArms::new(&self.arms, arms, self.owners.len());
+        self.owners.extend(shared.owners().iter().map(|owners| owners.first().copied()));
+        for &arm in arms {
             self.arms[arm].is_shared = true;
-            self.arms[arm].has_too_few_joints |= shared.has_too_few_joints();
+            self.arms[arm].bounds.has_too_few_joints |= shared.has_too_few_joints();
         }
         self.shared.push(shared);
     }
 
-    /// The same with every arm evaluated by itself.
-    pub(super) fn one_by_one(mut self) -> Self {
-        let members = self.groups.into_iter().flat_map(|group| group.members);
-        self.groups = members.map(|member| Group { members: vec![member], lanes: Lanes::None }).collect();
-        self
+    /// Puts arms that fit together into groups, in the order of their first members.
+    fn add_groups(&mut self, mut rest: Vec<usize>) {
+        while let Some(&first) = rest.first() {
+            let mut members = vec![first];
+            for &member in &rest[1..] {
+                members.push(member);
+                let arms: Vec<_> = members.iter().map(|&member| &self.arms[member].arm).collect();
+                if !are_alike(&arms) {
+                    members.pop();
+                }
+            }
+            rest.retain(|member| !members.contains(member));
+            self.add_group(&members);
+        }
     }
 
-    /// Finds the task errors of all arms at other joint positions than those that were evaluated.
-    pub(super) fn look(&mut self, t: f64, x: &[f64]) {
-        for Member { arm, from } in self.groups.iter().flat_map(|group| &group.members) {
-            let runtime = &mut self.arms[*arm];
-            let joints = runtime.arm.chain.dof();
-            runtime.look(t, &x[*from..from + joints]);
+    fn add_group(&mut self, members: &[usize]) {
+        let together: Option<Box<dyn Together>> = if members.len() <= 2 {
+            Bundle::<[f64; 2]>::new(&self.arms, members).map(|bundle| Box::new(bundle) as _)
+        } else {
+            Bundle::<[f64; 4]>::new(&self.arms, members).map(|bundle| Box::new(bundle) as _)
+        };
+        self.add_members(members, together.map_or(Members::Alone(members[0]), Members::SideBySide));
+    }
+
+    fn add_members(&mut self, members: &[usize], arms: Members) {
+        let (from, width) = (self.owners.len().next_multiple_of(ALIGNMENT), arms.width());
+        self.owners.resize(from, None);
+        for joint in 0..self.arms[members[0]].positions.len() {
+            self.owners.extend((0..width).map(|lane| Some((members[lane.min(members.len() - 1)], joint))));
         }
-        for shared in &mut self.shared {
+        self.owners.resize(self.owners.len().next_multiple_of(ALIGNMENT), None);
+        self.groups.push(Group { from, arms });
+    }
+
+    /// What the components of the state are: the joints of arms, or nothing.
+    pub(super) fn owners(&self) -> &[Option<Owner>] {
+        &self.owners
+    }
+
+    /// The state in which every arm has the joint positions that `position` gives.
+    pub(super) fn state(&self, position: impl Fn(Owner) -> f64) -> Vec<f64> {
+        self.owners.iter().map(|owner| owner.map_or(0.0, &position)).collect()
+    }
+
+    /// Finds the task errors of all arms, which are evaluated one by one, at other joint positions than those that were
+    /// evaluated.
+    pub(super) fn look(&mut self, t: f64, x: &[f64]) {
+        for Group { from, arms } in &self.groups {
+            if let Members::Alone(arm) = *arms {
+                let runtime = &mut self.arms[arm];
+                let joints = runtime.positions.len();
+                runtime.positions.copy_from_slice(&x[*from..][..joints]);
+                runtime.look(t);
+            }
+        }
+        for shared in &self.shared {
             shared.look(&mut self.arms, t, x);
         }
     }
 
-    /// The joint positions of all arms at the start, as a state.
-    pub(super) fn initial(&self) -> Vec<f64> {
-        let mut x = vec![0.0; self.dimension];
-        for (runtime, place) in self.arms.iter().zip(&self.places) {
-            if let Place::From(from) = *place {
-                x[from..from + runtime.arm.q0.len()].copy_from_slice(&runtime.arm.q0);
-            }
-        }
-        for shared in &self.shared {
-            x[shared.range()].copy_from_slice(&shared.initial(&self.arms));
-        }
-        x
+    /// Whether all arms are clearly on their paths and far from singularities.
+    pub(super) fn is_on_course(&self) -> bool {
+        let is_on_course = |group: &Group| match &group.arms {
+            Members::Alone(_) => false,
+            Members::SideBySide(together) => together.is_on_course(),
+        };
+        self.shared.is_empty() && self.groups.iter().all(is_on_course)
     }
 
-    /// The positions and velocities of an arm's own joints in a state and its derivative, which were evaluated last.
-    pub(super) fn joints_of<'a>(
-        &'a self,
-        arm: usize,
-        state: &'a [f64],
-        derivative: &'a [f64],
-    ) -> [&'a [f64]; 2] {
-        match self.places[arm] {
-            Place::From(from) => {
-                let range = from..from + self.arms[arm].arm.chain.dof();
-                [&state[range.clone()], &derivative[range]]
-            }
-            Place::Shared { set, member } => {
-                let member = &self.shared[set].members()[member];
-                [&member.positions, &member.velocities]
+    /// Takes down errors, limits and conditioning of a sample in which all arms are on course.
+    pub(super) fn watch(&mut self, t: f64, sample: &Sample<'_>) {
+        for group in &mut self.groups {
+            if let Members::SideBySide(together) = &mut group.arms {
+                together.watch(self.level, t, &mut self.arms, &sample.from(group.from));
             }
         }
     }
-}
 
-/// Puts arms that fit together into groups, in the order of their first members.
-fn grouped(arms: &[ArmRuntime], mut rest: Vec<Member>) -> Vec<Group> {
-    let own = |members: &[Member]| members.iter().map(|member| &arms[member.arm].arm).collect::<Vec<_>>();
-    let mut groups = Vec::new();
-    while let Some(&first) = rest.first() {
-        let mut members = vec![first];
-        for &member in &rest[1..] {
-            members.push(member);
-            if Bundle::<[f64; 4]>::new(&own(&members)).is_none() {
-                members.pop();
-            }
-        }
-        rest.retain(|member| members.iter().all(|taken| taken.arm != member.arm));
-        let two = || Bundle::new(&own(&members)).map(|bundle| Lanes::Two(Box::new(bundle)));
-        let four = || Bundle::new(&own(&members)).map(|bundle| Lanes::Four(Box::new(bundle)));
-        let lanes = two().or_else(four).unwrap_or(Lanes::None);
-        groups.push(Group { members, lanes });
+    /// Tells every arm what is known of it at a sample.
+    pub(super) fn tell(&mut self, sample: &Sample<'_>) {
+        self.each_together(|together, arms, from| together.tell(arms, &sample.from(from)));
     }
-    groups
-}
 
-impl Group {
-    fn evaluate(
-        &mut self,
-        level: Level,
-        arms: &mut [ArmRuntime],
-        at: (f64, f64),
-        x: &[f64],
-        out: [&mut [f64]; 2],
-    ) {
-        let members = &self.members;
-        match &mut self.lanes {
-            Lanes::None => {
-                let Member { arm, from } = members[0];
-                let range = from..from + arms[arm].arm.chain.dof();
-                let [f, g] = out;
-                let (f, g) = (&mut f[range.clone()], &mut g[range.clone()]);
-                arms[arm].evaluate(at.0, at.1, &x[range], f, g);
+    /// Tells the monitors where the arms were one sample ago.
+    pub(super) fn remind(&mut self, sample: &Sample<'_>) {
+        self.each_together(|together, arms, from| together.remind(arms, &sample.previous[from..]));
+    }
+
+    /// Gives the monitors what has been watched.
+    pub(super) fn hand_over(&mut self) {
+        self.each_together(|together, arms, _| together.hand_over(arms));
+    }
+
+    fn each_together(&mut self, act: impl Fn(&dyn Together, &mut [ArmRuntime], usize)) {
+        for group in &self.groups {
+            if let Members::SideBySide(together) = &group.arms {
+                act(&**together, &mut self.arms, group.from);
             }
-            Lanes::Two(bundle) => evaluate_bundle(bundle, members, level, arms, at, x, out),
-            Lanes::Four(bundle) => evaluate_bundle(bundle, members, level, arms, at, x, out),
         }
     }
 }
 
-fn evaluate_bundle<A: LaneArray>(
-    bundle: &mut Bundle<A>,
-    members: &[Member],
-    level: Level,
-    arms: &mut [ArmRuntime],
-    at: (f64, f64),
-    x: &[f64],
-    [f, g]: [&mut [f64]; 2],
-) {
-    // The last arm fills the lanes that are left.
-    let joints = arms[members[0].arm].arm.chain.dof();
-    bundle.evaluate(level, at, |lane| {
-        let member = members[lane.min(members.len() - 1)];
-        (&arms[member.arm].arm, &x[member.from..member.from + joints])
-    });
-    for (lane, member) in members.iter().enumerate() {
-        let range = member.from..member.from + joints;
-        let out = [&mut f[range.clone()], &mut g[range.clone()]];
-        bundle.deliver(lane, &mut arms[member.arm], at, &x[range], out);
+impl Members {
+    /// How many lanes there are for each joint.
+    fn width(&self) -> usize {
+        match self {
+            Self::Alone(_) => 1,
+            Self::SideBySide(together) => together.width(),
+        }
+    }
+}
+
+impl<'a> Sample<'a> {
+    /// The part of the state that begins there.
+    fn from(&self, from: usize) -> Sample<'a> {
+        Sample {
+            positions: &self.positions[from..],
+            previous: &self.previous[from..],
+            velocities: &self.velocities[from..],
+        }
     }
 }
 
 impl Field<f64> for SynchronousField {
     fn dimension(&self) -> usize {
-        self.dimension
+        self.owners.len()
     }
 
     fn parts(&self) -> Parts {
@@ -292,11 +220,24 @@ impl Field<f64> for SynchronousField {
     }
 
     fn evaluate(&mut self, t: f64, x: &[f64], f: &mut [f64], g: &mut [f64]) {
-        for group in &mut self.groups {
-            group.evaluate(self.level, &mut self.arms, (t, self.gain), x, [&mut *f, &mut *g]);
+        let at = (t, self.gain);
+        for Group { from, arms } in &mut self.groups {
+            let (x, f, g) = (&x[*from..], &mut f[*from..], &mut g[*from..]);
+            match arms {
+                Members::Alone(arm) => evaluate_alone(&mut self.arms[*arm], at, x, [f, g]),
+                Members::SideBySide(together) => together.evaluate(self.level, at, &mut self.arms, x, [f, g]),
+            }
         }
         for shared in &mut self.shared {
-            shared.evaluate(&mut self.arms, (t, self.gain), x, [&mut *f, &mut *g]);
+            shared.evaluate(&mut self.arms, at, x, [&mut *f, &mut *g]);
         }
     }
+}
+
+fn evaluate_alone(runtime: &mut ArmRuntime, (t, gain): (f64, f64), x: &[f64], [f, g]: [&mut [f64]; 2]) {
+    let joints = runtime.positions.len();
+    runtime.positions.copy_from_slice(&x[..joints]);
+    runtime.evaluate(t, gain);
+    f[..joints].copy_from_slice(&runtime.velocities);
+    g[..joints].copy_from_slice(&runtime.feedback);
 }

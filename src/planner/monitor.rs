@@ -1,5 +1,6 @@
+use super::lost::Deviation;
 use crate::law::Resolution;
-use crate::robot::Chain;
+use crate::robot::{Chain, Limits};
 use nalgebra::Vector6;
 
 /// Which limit of a joint was crossed.
@@ -56,25 +57,7 @@ impl Worst {
     }
 }
 
-/// The squared lengths of a task error.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Deviation {
-    /// \[m^2\]
-    pub(super) position: f64,
-    /// \[rad^2\]
-    pub(super) orientation: f64,
-}
-
-impl Deviation {
-    pub(super) fn of(error: &Vector6<f64>) -> Self {
-        Self {
-            position: error.fixed_rows::<3>(0).norm_squared(),
-            orientation: error.fixed_rows::<3>(3).norm_squared(),
-        }
-    }
-}
-
-/// The larger of the two, the first when the second is NaN: one instruction where `f64::max` takes five.
+/// The larger of the two, the first when the second is NaN.
 fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
@@ -85,8 +68,8 @@ pub(super) struct Monitor {
     position: Vec<Worst>,
     velocity: Vec<Worst>,
     /// The positions one sample ago.
-    previous: Vec<f64>,
-    bounds: Bounds,
+    pub(super) previous: Vec<f64>,
+    limits: Vec<Limit>,
     sigma: f64,
     largest: Deviation,
     largest_sum: f64,
@@ -96,41 +79,28 @@ pub(super) struct Monitor {
     pub(super) smallest_at: f64,
 }
 
-/// The limits of all joints, in the form in which most samples are done with at a glance.
+/// The limits of a joint, in the form in which most samples are done with at a glance.
 #[derive(Clone, Debug)]
-struct Bounds {
-    lower: Vec<f64>,
-    upper: Vec<f64>,
-    velocity: Vec<f64>,
-    /// How far a joint may go in one step, less what rounding could make of it.
-    stride: Vec<f64>,
+pub(super) struct Limit {
+    pub(super) lower: f64,
+    pub(super) upper: f64,
+    pub(super) velocity: f64,
+    /// How far the joint may go in one step, less what rounding could make of it.
+    pub(super) stride: f64,
 }
 
-impl Bounds {
-    fn of(chain: &Chain, sigma: f64) -> Self {
-        let all = |pick: fn(&crate::robot::Limits) -> f64| -> Vec<f64> {
-            chain.joints().iter().map(|joint| pick(&joint.limits)).collect()
-        };
-        let velocity = all(|limits| limits.velocity);
-        let stride = velocity.iter().map(|limit| limit * sigma * (1.0 - 1e-12)).collect();
-        Self { lower: all(|limits| limits.lower), upper: all(|limits| limits.upper), velocity, stride }
+impl Limit {
+    fn of(limits: &Limits, sigma: f64) -> Self {
+        let Limits { lower, upper, velocity } = *limits;
+        Self { lower, upper, velocity, stride: velocity * sigma * (1.0 - 1e-12) }
     }
 
-    /// Whether no limit can have been crossed. Every joint is looked at, whatever the others are: that is quicker than to
-    /// stop early.
-    #[expect(clippy::needless_bitwise_bool, reason = "without branches the loop is vectorised")]
-    fn hold(&self, q: &[f64], velocity: &[f64], previous: &[f64]) -> bool {
-        let n = self.lower.len();
-        let (q, velocity, previous) = (&q[..n], &velocity[..n], &previous[..n]);
-        let (upper, fastest, stride) = (&self.upper[..n], &self.velocity[..n], &self.stride[..n]);
-        let mut all = true;
-        for i in 0..n {
-            all &= (q[i] >= self.lower[i])
-                & (q[i] <= upper[i])
-                & (velocity[i].abs() <= fastest[i])
-                & ((q[i] - previous[i]).abs() <= stride[i]);
-        }
-        all
+    /// Whether it can not have been crossed.
+    fn holds(&self, q: f64, velocity: f64, previous: f64) -> bool {
+        q >= self.lower
+            && q <= self.upper
+            && velocity.abs() <= self.velocity
+            && (q - previous).abs() <= self.stride
     }
 }
 
@@ -140,7 +110,7 @@ impl Monitor {
             position: vec![Worst::NONE; chain.dof()],
             velocity: vec![Worst::NONE; chain.dof()],
             previous: vec![f64::NAN; chain.dof()],
-            bounds: Bounds::of(chain, sigma),
+            limits: chain.joints().iter().map(|joint| Limit::of(&joint.limits, sigma)).collect(),
             sigma,
             largest: Deviation { position: 0.0, orientation: 0.0 },
             largest_sum: 0.0,
@@ -151,11 +121,33 @@ impl Monitor {
         }
     }
 
-    pub(super) fn observe_error(&mut self, error: &Vector6<f64>, deviation: &Deviation) {
-        self.largest_sum = larger(self.largest_sum, deviation.position + deviation.orientation);
-        self.largest.position = larger(self.largest.position, deviation.position);
-        self.largest.orientation = larger(self.largest.orientation, deviation.orientation);
-        self.max_error_component = error.iter().fold(self.max_error_component, |a, b| larger(a, b.abs()));
+    /// The limits of all joints.
+    pub(super) fn limits(&self) -> &[Limit] {
+        &self.limits
+    }
+
+    pub(super) fn observe_error(&mut self, error: &Vector6<f64>) {
+        let Deviation { position, orientation } = Deviation::of(error);
+        let component = error.iter().fold(0.0, |a, b| larger(a, b.abs()));
+        self.observe_largest([position, orientation, position + orientation], component);
+    }
+
+    /// Takes note of the squares of a position error, of an orientation error and of both, and of the largest component.
+    fn observe_largest(&mut self, [position, orientation, sum]: [f64; 3], component: f64) {
+        self.largest.position = larger(self.largest.position, position);
+        self.largest.orientation = larger(self.largest.orientation, orientation);
+        self.largest_sum = larger(self.largest_sum, sum);
+        self.max_error_component = larger(self.max_error_component, component);
+    }
+
+    /// Takes note of many samples: the largest of what [`observe_error`](Self::observe_error) looks at, and the smallest
+    /// singular value with the time of its first occurrence.
+    pub(super) fn observe_extremes(&mut self, squares: [f64; 3], component: f64, smallest: (f64, f64)) {
+        self.observe_largest(squares, component);
+        let known = (self.smallest_singular_value, self.smallest_at);
+        if smallest.0 < known.0 || (smallest.0 == known.0 && smallest.1 < known.1) {
+            (self.smallest_singular_value, self.smallest_at) = smallest;
+        }
     }
 
     /// The largest norm of the task error.
@@ -174,7 +166,10 @@ impl Monitor {
     }
 
     pub(super) fn observe_joints(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
-        if !self.bounds.hold(q, velocity, &self.previous) {
+        let joints = q.iter().zip(velocity).zip(&self.previous).zip(&self.limits);
+        let mut joints =
+            joints.map(|(((q, velocity), previous), limit)| limit.holds(*q, *velocity, *previous));
+        if !joints.all(|holds| holds) {
             self.look_closely(t, q, velocity);
         }
         self.previous.copy_from_slice(q);
@@ -182,11 +177,10 @@ impl Monitor {
 
     /// Takes down the crossings of a sample that is not clearly within all limits.
     #[cold]
-    fn look_closely(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
-        let bounds = &self.bounds;
-        for i in 0..q.len() {
-            let fastest = bounds.velocity[i];
-            self.position[i].observe(t, q[i], bounds.lower[i], bounds.upper[i]);
+    pub(super) fn look_closely(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
+        for (i, limit) in self.limits.iter().enumerate() {
+            let fastest = limit.velocity;
+            self.position[i].observe(t, q[i], limit.lower, limit.upper);
             self.velocity[i].observe(t, velocity[i], -fastest, fastest);
             // NaN before the first step compares as no violation.
             let mean = (q[i] - self.previous[i]) / self.sigma;

@@ -77,11 +77,6 @@ impl NoisyLoop {
         &self.noise
     }
 
-    /// The joint positions sent to the robot, where the stepper holds those that were measured.
-    pub(super) fn commanded(&self) -> &[f64] {
-        &self.commanded
-    }
-
     /// Evaluates the present sample as it is measured; the task errors found are the true ones.
     pub(super) fn evaluate(&mut self, stepper: &mut Multistep<f64>, field: &mut SynchronousField) {
         let draws = Draws::of(&self.noise, stepper.index());
@@ -93,10 +88,16 @@ impl NoisyLoop {
             stepper.evaluate(field);
             return;
         }
-        for (joint, position) in stepper.state_mut().iter_mut().enumerate() {
+        let joints = stepper.state_mut().iter_mut().zip(field.owners()).filter(|(_, owner)| owner.is_some());
+        for (joint, (position, _)) in joints.enumerate() {
             *position += draws.joint(joint);
         }
         stepper.evaluate(field);
+        self.look(stepper, field);
+    }
+
+    /// Brings the arms, evaluated as they are measured, to where they were sent.
+    pub(super) fn look(&self, stepper: &Multistep<f64>, field: &mut SynchronousField) {
         field.look(stepper.time(), &self.commanded);
     }
 }

@@ -1,6 +1,7 @@
 //! Arms of one machine that move joints in common: one vector of joints, one stacked task.
 
-use super::field::ArmRuntime;
+use super::field::Owner;
+use super::runtime::ArmRuntime;
 use super::{Arm, PlannerError, SharedJoints};
 use crate::law::StackedPseudoinverse;
 use crate::robot::ChainJoint;
@@ -21,13 +22,11 @@ pub(super) struct SharedArms {
 }
 
 /// One of them, with what it sees of the union in the order of its own joints.
-pub(super) struct SharedMember {
-    pub(super) arm: usize,
+struct SharedMember {
+    arm: usize,
     first_row: usize,
     rows: usize,
     places: Vec<usize>,
-    pub(super) positions: Vec<f64>,
-    pub(super) velocities: Vec<f64>,
 }
 
 impl SharedArms {
@@ -44,15 +43,7 @@ impl SharedArms {
                 let start = spans[place].as_ref().map_or(row, |span| span.start);
                 spans[place] = Some(start..row + rows);
             }
-            let zeros = vec![0.0; places.len()];
-            members.push(SharedMember {
-                arm,
-                first_row: row,
-                rows,
-                places,
-                positions: zeros.clone(),
-                velocities: zeros,
-            });
+            members.push(SharedMember { arm, first_row: row, rows, places });
             row += rows;
         }
         // A singular value of the whole is at most that of a part: the largest threshold keeps every arm's promise.
@@ -67,11 +58,6 @@ impl SharedArms {
         self.from..self.from + self.joints.len()
     }
 
-    /// The arms, in order.
-    pub(super) fn members(&self) -> &[SharedMember] {
-        &self.members
-    }
-
     /// How many joints there are for how many task components.
     pub(super) fn size(&self) -> (usize, usize) {
         (self.joints.len(), self.velocities[0].len())
@@ -83,15 +69,20 @@ impl SharedArms {
         joints < rows
     }
 
-    /// The initial positions of its joints.
-    pub(super) fn initial(&self, arms: &[ArmRuntime]) -> Vec<f64> {
-        let mut x = vec![0.0; self.joints.len()];
+    /// The arms, in order.
+    pub(super) fn arms(&self) -> impl Iterator<Item = usize> {
+        self.members.iter().map(|member| member.arm)
+    }
+
+    /// Its joints in order, each with the arms that it moves and its index in them.
+    pub(super) fn owners(&self) -> Vec<Vec<Owner>> {
+        let mut owners = vec![Vec::new(); self.joints.len()];
         for member in &self.members {
-            for (&place, &q) in member.places.iter().zip(&arms[member.arm].arm.q0) {
-                x[place] = q;
+            for (joint, &place) in member.places.iter().enumerate() {
+                owners[place].push((member.arm, joint));
             }
         }
-        x
+        owners
     }
 
     /// Kinematics and task errors of all members at time `t`, then both parts of the velocity of all joints.
@@ -104,10 +95,10 @@ impl SharedArms {
     ) {
         let (x, f, g) = (&x[self.range()], &mut f[self.range()], &mut g[self.range()]);
         let [forward, back] = &mut self.velocities;
-        for member in &mut self.members {
+        for member in &self.members {
             let runtime = &mut arms[member.arm];
-            gather(x, &member.places, &mut member.positions);
-            let twist = runtime.look(t, &member.positions);
+            gather(x, &member.places, &mut runtime.positions);
+            let twist = runtime.look(t);
             let (twist, error) = runtime.measured(twist);
             for row in 0..member.rows {
                 forward[member.first_row + row] = twist[row];
@@ -119,18 +110,20 @@ impl SharedArms {
             }
         }
         let resolution = self.law.resolve([&*forward, &*back], f, g);
-        for member in &mut self.members {
-            gather(f, &member.places, &mut member.velocities);
-            arms[member.arm].resolution = resolution;
+        for member in &self.members {
+            let runtime = &mut arms[member.arm];
+            gather(f, &member.places, &mut runtime.velocities);
+            runtime.resolution = resolution;
         }
     }
 
     /// Kinematics and task errors of all members at time `t`, at other joint positions than those that were evaluated.
-    pub(super) fn look(&mut self, arms: &mut [ArmRuntime], t: f64, x: &[f64]) {
+    pub(super) fn look(&self, arms: &mut [ArmRuntime], t: f64, x: &[f64]) {
         let x = &x[self.range()];
-        for member in &mut self.members {
-            gather(x, &member.places, &mut member.positions);
-            arms[member.arm].look(t, &member.positions);
+        for member in &self.members {
+            let runtime = &mut arms[member.arm];
+            gather(x, &member.places, &mut runtime.positions);
+            runtime.look(t);
         }
     }
 

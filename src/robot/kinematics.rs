@@ -4,15 +4,12 @@ use fearless_simd::{Level, Simd, f64x4};
 use nalgebra::{IsometryMatrix3, Vector3, Vector6};
 
 use super::Chain;
-use super::segment::{Folded, Frame, Motion, Single, Twist, load_three};
-use crate::math::{Kernel, Lanes, sines_and_cosines, with_instructions};
+use super::segment::{Folded, Frame, Motion, Single, Twist};
+use crate::math::{Kernel, Lanes, sines_and_cosines, sines_and_cosines_of, with_instructions};
 
-/// A moving axis with the origin of its frame, both in the base's axes.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Axis<A> {
-    pub(super) direction: [A; 3],
-    pub(super) origin: [A; 3],
-}
+/// The origin of a moving axis's frame, then the axis's direction, both in the base's axes: where the column of the Jacobian
+/// will stand, which has the direction at the same place.
+pub(super) type Axis<A> = [A; 6];
 
 /// The sines and cosines of the joint positions of a chain in the order of its segments: lane by lane, filled up to whole
 /// vectors of four.
@@ -49,11 +46,11 @@ impl Motions {
     pub(super) fn turn<S: Simd>(&mut self, simd: S, position: impl Fn(usize) -> f64) {
         sines_and_cosines::<f64x4<S>>(simd, position, &mut self.sines, &mut self.cosines);
     }
-}
 
-impl<A: Copy> Axis<A> {
-    pub(super) fn nowhere(zero: A) -> Axis<A> {
-        Axis { direction: [zero; 3], origin: [zero; 3] }
+    /// The same for positions that lie one after the other, filled up to whole vectors of four.
+    #[inline(always)]
+    pub(super) fn turn_to<S: Simd>(&mut self, simd: S, positions: &[f64]) {
+        sines_and_cosines_of::<f64x4<S>>(simd, positions, &mut self.sines, &mut self.cosines);
     }
 }
 
@@ -109,8 +106,8 @@ pub(super) fn forward<'a, V: Lanes>(
     let turns = lanes(&motions.sines).zip(lanes(&motions.cosines));
     for (k, ((segment, axis), (sine, cosine))) in folded.segments.iter().zip(axes).zip(turns).enumerate() {
         for i in 0..3 {
-            frame.z[i].store(&mut axis.direction[i]);
-            frame.p[i].store(&mut axis.origin[i]);
+            frame.p[i].store(&mut axis[i]);
+            frame.z[i].store(&mut axis[3 + i]);
         }
         match segment.motion {
             Motion::Turn => frame.turn_about_z(V::load_slice(token, sine), V::load_slice(token, cosine)),
@@ -145,13 +142,13 @@ pub(super) fn twist_of<V: Lanes>(
     motion: Motion,
     p: &[V; 3],
 ) -> [V; 6] {
-    let z = load_three::<V>(token, &axis.direction);
+    let load = |i: usize| V::load(token, &axis[i]);
+    let z = [load(3), load(4), load(5)];
     if motion == Motion::Shift {
         let zero = V::splat(token, 0.0);
         return [z[0], z[1], z[2], zero, zero, zero];
     }
-    let o = load_three::<V>(token, &axis.origin);
-    let d = [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
+    let d = [p[0] - load(0), p[1] - load(1), p[2] - load(2)];
     let v = [z[1] * d[2] - z[2] * d[1], z[2] * d[0] - z[0] * d[2], z[0] * d[1] - z[1] * d[0]];
     [v[0], v[1], v[2], z[0], z[1], z[2]]
 }
@@ -161,7 +158,7 @@ impl ChainScratch {
         ChainScratch {
             level: Level::new(),
             motions: Motions::with_length(length),
-            axes: vec![Axis::nowhere([0.0]); length],
+            axes: vec![[[0.0]; 6]; length],
             tip: Frame::IDENTITY,
         }
     }

@@ -106,7 +106,7 @@ impl<A> Frame<A> {
 
 /// Three numbers to compute with.
 #[inline(always)]
-pub(super) fn load_three<V: Lanes>(token: V::Token, values: &[V::Array; 3]) -> [V; 3] {
+fn load_three<V: Lanes>(token: V::Token, values: &[V::Array; 3]) -> [V; 3] {
     [V::load(token, &values[0]), V::load(token, &values[1]), V::load(token, &values[2])]
 }
 

@@ -4,7 +4,7 @@ use fearless_simd::Simd;
 
 use super::Chain;
 use super::kinematics::{Axis, Motions, forward, twist_of};
-use super::segment::Folded;
+use super::segment::{Folded, Motion};
 use crate::math::{LaneArray, Lanes};
 
 /// The constants of up to `A::WIDTH` chains; the last chain fills the lanes that are left.
@@ -17,9 +17,8 @@ pub(crate) struct SideBySide<A> {
 #[derive(Debug, Clone)]
 pub(crate) struct SideBySideScratch<A> {
     motions: Motions,
-    axes: Vec<Axis<A>>,
     /// The geometric Jacobians, column by column.
-    pub(crate) columns: Vec<[A; 6]>,
+    pub(crate) columns: Vec<Axis<A>>,
 }
 
 /// The tips of all lanes.
@@ -52,28 +51,28 @@ impl<A: LaneArray> SideBySide<A> {
     pub(crate) fn scratch(&self) -> SideBySideScratch<A> {
         SideBySideScratch {
             motions: Motions::with_length(self.dof() * A::WIDTH),
-            axes: vec![Axis::nowhere(A::ZERO); self.dof()],
             columns: vec![[A::ZERO; 6]; self.dof()],
         }
     }
 
-    /// Runs the kinematics at the joint positions of each lane.
+    /// Runs the kinematics at joint positions that lie joint by joint, all lanes of each, filled up to whole vectors of four.
     #[inline(always)]
     pub(crate) fn run<S: Simd>(
         &self,
         simd: S,
-        q: &A::Of<&[f64]>,
+        q: &[f64],
         scratch: &mut SideBySideScratch<A>,
     ) -> Tips<A::Vector<S>> {
-        let q = q.as_ref();
-        scratch.motions.turn(simd, |i| q[i % A::WIDTH].get(i / A::WIDTH).copied().unwrap_or(0.0));
-        let position = |k: usize| <A::Vector<S> as Lanes>::gather(simd, |lane| q[lane][k]);
-        let tip = forward::<A::Vector<S>>(simd, &self.folded, &scratch.motions, position, &mut scratch.axes);
-        let axes = self.folded.segments.iter().zip(&scratch.axes);
-        for ((segment, axis), column) in axes.zip(&mut scratch.columns) {
-            let twist = twist_of::<A::Vector<S>>(simd, axis, segment.motion, &tip.p);
-            for row in 0..6 {
-                twist[row].store(&mut column[row]);
+        scratch.motions.turn_to(simd, q);
+        let position = |k: usize| <A::Vector<S> as Lanes>::load_slice(simd, &q[k * A::WIDTH..][..A::WIDTH]);
+        let columns = &mut scratch.columns;
+        let tip = forward::<A::Vector<S>>(simd, &self.folded, &scratch.motions, position, columns);
+        for (segment, column) in self.folded.segments.iter().zip(columns) {
+            let twist = twist_of::<A::Vector<S>>(simd, column, segment.motion, &tip.p);
+            // Below, a turning axis has its direction there already.
+            let changed = if segment.motion == Motion::Turn { 3 } else { 6 };
+            for (entry, twist) in column[..changed].iter_mut().zip(twist) {
+                twist.store(entry);
             }
         }
         Tips { rotation: [tip.x, tip.y, tip.z], position: tip.p }
