@@ -28,9 +28,9 @@ const MACHINE: &str = "kinstep.machine";
 /// The most poses of a path that is drawn.
 const LONGEST_PATH: usize = 10_000;
 /// The quality of service of topics that late listeners get too: reliable, with the last message kept.
-const LATCHED: &str = "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n  deadline:\n    sec: 2147483647\n    \
-     nsec: 4294967295\n  lifespan:\n    sec: 2147483647\n    nsec: 4294967295\n  liveliness: 1\n  \
-     liveliness_lease_duration:\n    sec: 2147483647\n    nsec: 4294967295\n  avoid_ros_namespace_conventions: false\n";
+const LATCHED: &str = "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n  deadline:\n    sec: 9223372036\n    \
+     nsec: 854775807\n  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  liveliness: 1\n  \
+     liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n  avoid_ros_namespace_conventions: false\n";
 
 /// An MCAP file with the profile `ros2`, as Foxglove, RViz (`ros2 bag play`) and `rosbag2` open it. Time begins at zero and
 /// counts from the first sample.
