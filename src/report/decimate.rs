@@ -3,9 +3,8 @@
 /// Returns at most `most` of the points, in their order: the first, the last, and of every stretch of as many points as
 /// the others the lowest and the highest, so that every peak is still there.
 ///
-/// Points that are not numbers are gaps of a line: of a stretch without any number one such point stays, and one beside a
-/// kept number tells that the line is broken there only if it is all that its stretch has. Fewer than four points can not
-/// hold extremes; `most` counts as four then.
+/// A stretch without any number keeps one point, so that a longer gap stays a gap; single points that are not numbers
+/// are left out. `most` counts as four if it is less, since fewer points hold no extremes.
 ///
 /// ```
 /// let wave: Vec<_> = (0..10_000).map(|k| (f64::from(k), (f64::from(k) / 500.0).sin())).collect();

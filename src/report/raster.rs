@@ -4,7 +4,7 @@ use std::sync::{Arc, LazyLock};
 
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::fontdb::Database;
-use resvg::usvg::{Options, Tree};
+use resvg::usvg::{Options, Tree, WriteOptions};
 
 /// The largest side of a picture [px].
 const LARGEST: f32 = 16_384.0;
@@ -45,12 +45,15 @@ pub fn to_png(svg: &str, scale: f32) -> Result<Vec<u8>, RasterError> {
     pixels.encode_png().map_err(|e| RasterError(e.to_string()))
 }
 
-/// Returns an SVG document as a PDF file of one page, with its text as text.
+/// Returns an SVG document as a PDF file of one page. Its letters are outlines, which look the same everywhere; a program
+/// can not search for them.
 ///
 /// # Errors
 /// The text is not an SVG document, or it can not be written as PDF.
 pub fn to_pdf(svg: &str) -> Result<Vec<u8>, RasterError> {
-    let tree = tree(svg)?;
+    // The writer of pages would need two more libraries to put a font into its files.
+    let outlines = tree(svg)?.to_string(&WriteOptions { preserve_text: false, ..WriteOptions::default() });
+    let tree = Tree::from_str(&outlines, &Options::default()).map_err(|e| RasterError(e.to_string()))?;
     svg2pdf::to_pdf(&tree, svg2pdf::ConversionOptions::default(), svg2pdf::PageOptions::default())
         .map_err(|e| RasterError(e.to_string()))
 }

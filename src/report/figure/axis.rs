@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::style::{FONT_SIZE, shortened, text_width};
+use crate::report::short;
 
 /// How an axis counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +82,9 @@ impl Axis {
 
     /// The ticks of an axis that is `room` long, for labels that take `label` of it [px].
     pub(super) fn ticks(&self, room: f64, label: f64) -> Vec<Tick> {
-        let most = (room / (2.8 * label + 4.0)).clamp(1.5, 14.0);
+        // A few ticks stand closer, as one tells nothing about a scale.
+        let few = (room / (1.55 * label)).clamp(1.5, 4.0);
+        let most = (room / (2.8 * label + 4.0)).clamp(few, 14.0);
         match self.scale {
             Scale::Linear => linear_ticks(self.range, most.min(12.0)),
             Scale::Angle => angle_ticks(self.range),
@@ -99,12 +102,20 @@ impl Axis {
         let upright = label <= FONT_SIZE;
         let each = room / self.names.len().max(1) as f64;
         let longest = if upright { WORD } else { ((each / text_width("x", FONT_SIZE)) as usize).max(6) };
-        let wide = |name: &String| text_width(&shortened(name, longest), FONT_SIZE) + 6.0;
+        let text = |name: &String| shortened(&plain(name), longest);
+        let wide = |name: &String| text_width(&text(name), FONT_SIZE) + 6.0;
         let needed = if upright { FONT_SIZE + 2.0 } else { self.names.iter().map(wide).fold(0.0, f64::max) };
         let stride = (needed / each).ceil().max(1.0) as usize;
         let names = self.names.iter().enumerate().step_by(stride);
-        names.map(|(k, name)| Tick { value: k as f64, label: (shortened(name, longest), None) }).collect()
+        names.map(|(k, name)| Tick { value: k as f64, label: (text(name), None) }).collect()
     }
+}
+
+/// A name as it is; a number with many digits with as many as tell something.
+fn plain(name: &str) -> String {
+    const LONG: usize = 7;
+    let number = name.parse::<f64>().ok().filter(|_| name.len() > LONG);
+    number.map_or_else(|| name.to_owned(), short)
 }
 
 fn linear_ticks((low, high): (f64, f64), wanted: f64) -> Vec<Tick> {

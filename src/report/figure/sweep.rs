@@ -199,7 +199,10 @@ fn lines(name: &str, (along, beside): (&Key, Option<&Key>), rows: &[&SweepRow], 
         };
         let mut points: Vec<(f64, f64)> = (0..along.values.len()).map(|k| (place(k), worst(k))).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let seen = points.iter().copied().filter(|point| point.1 > 0.0).collect();
+        let seen: Vec<(f64, f64)> = points.iter().copied().filter(|point| point.1 > 0.0).collect();
+        if seen.is_empty() {
+            continue;
+        }
         if numbers.is_some() {
             marks.push(Mark::Line { name: name.clone(), points, parameter: Vec::new(), style });
         }
@@ -237,7 +240,9 @@ fn error_axis(label: &str, column: &str, rows: &[&SweepRow]) -> Axis {
     let errors = rows.iter().filter(|row| row.is_completed()).map(|row| row.figure(MEASURE));
     let errors = errors.filter(|error| error.is_finite() && *error > 0.0);
     let (low, high) = errors.fold((f64::MAX, f64::MIN_POSITIVE), |(a, b), e| (a.min(e), b.max(e)));
-    Axis::new(label, column, Scale::Logarithmic, (low / 2.0, high * 2.0))
+    // Where nothing came to its end there is no size of errors.
+    let range = if low <= high { (low / 2.0, high * 2.0) } else { (1e-9, 1.0) };
+    Axis::new(label, column, Scale::Logarithmic, range)
 }
 
 /// The rows by the values of a key, if there is one.

@@ -13,6 +13,7 @@ use nalgebra::Vector6;
 
 use crate::formula::FormulaTable;
 use crate::planner::Plan;
+use crate::report::short;
 use crate::trajectory::{ArmTrajectory, Recording, StagedArm};
 
 use super::figure::Figure;
@@ -185,7 +186,7 @@ impl<'a> PlanFigures<'a> {
     /// What made the plan, as a caption has it.
     fn made_by(&self) -> String {
         let Some(about) = &self.recording.trajectory.about else { return String::new() };
-        let (sigma, h) = (crate::math::figure(about.sigma), crate::math::figure(about.h));
+        let (sigma, h) = (crate::math::figure(about.sigma), short(about.h));
         // Blanks that do not break keep quantities whole.
         format!(
             "Formula\u{a0}{}, \u{3c3}\u{a0}=\u{a0}{sigma}\u{a0}s, h\u{a0}=\u{a0}{h}, start\u{a0}{}.",

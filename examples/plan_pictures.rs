@@ -1,0 +1,42 @@
+//! Plans two scenarios and draws them: the pictures of the README.
+//!
+//! `cargo run --example plan_pictures -- docs/pictures` (without a folder the pictures are only listed).
+
+#![allow(clippy::print_stdout)]
+
+use std::error::Error;
+use std::path::Path;
+
+use kinstep::formula::FormulaTable;
+use kinstep::report::figure::{Figure, PlanFigures};
+use kinstep::scenario::ScenarioText;
+use kinstep::trajectory::{About, Recording, Trajectory};
+
+/// The scenarios, and which of their pictures are shown.
+const SHOWN: [(&str, &str, &[&str]); 2] = [
+    ("planar_dual", include_str!("planar_dual.toml"), &["motion", "errors"]),
+    ("dual_panda", include_str!("dual_panda.toml"), &["motion-slanted", "velocities-left"]),
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = std::env::args().nth(1);
+    for (name, text, shown) in SHOWN {
+        for figure in pictures(text)?.iter().filter(|figure| shown.contains(&figure.name.as_str())) {
+            let svg = figure.to_svg();
+            println!("{name}-{}.svg: {} bytes, {}", figure.name, svg.len(), figure.title);
+            if let Some(folder) = &folder {
+                std::fs::write(Path::new(folder).join(format!("{name}-{}.svg", figure.name)), svg)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn pictures(text: &str) -> Result<Vec<Figure>, Box<dyn Error>> {
+    let scenario = ScenarioText::parse(text)?.scenario()?;
+    let stage = scenario.stage(None)?;
+    let plan = scenario.planner(FormulaTable::builtin(), None)?.run();
+    let trajectory = Trajectory::of(&plan, Some(About::of(&plan, text, &stage)));
+    let recording = Recording { trajectory: &trajectory, stage: &stage };
+    Ok(PlanFigures::new(recording, Some(&plan)).draw())
+}
