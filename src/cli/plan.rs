@@ -163,10 +163,10 @@ fn closing(arguments: &PlanArguments, plan: &Plan, table: &FormulaTable, scenari
     let mut written = String::new();
     match &arguments.out {
         Some(folder) => {
-            written = format!("\nWritten to {}: {}.\n", folder.display(), names(arguments).join(", "))
+            written = format!("\nWritten to {}: {}.\n", folder.display(), names(arguments).join(", "));
         }
         None => {
-            next.push(Suggestion::new("--out results", "the trajectory as a file, and a page to look at"))
+            next.push(Suggestion::new("--out results", "the trajectory as a file, and a page to look at"));
         }
     }
     next.extend(suggestions(plan, table, scenario));
