@@ -22,7 +22,9 @@ const PLANAR: &str = include_str!("../examples/planar_dual.toml");
 /// A plan of a scenario's text, on its stage.
 fn run(text: &str, set: &[&str], folder: Option<&Path>) -> (Plan, Stage, String) {
     let mut text = ScenarioText::parse(text).unwrap();
-    set.iter().for_each(|assignment| text.set(assignment).unwrap());
+    for assignment in set {
+        text.set(assignment).unwrap();
+    }
     let scenario = text.scenario().unwrap();
     let plan = scenario.planner(FormulaTable::builtin(), folder).unwrap().run();
     let stage = scenario.stage(folder).unwrap();
@@ -62,7 +64,7 @@ fn check_nesting(html: &str) {
         let (tag, after) = rest.split_at(end);
         rest = &after[1..];
         let name: String =
-            tag.chars().skip_while(|c| *c == '/').take_while(|c| c.is_ascii_alphanumeric()).collect();
+            tag.chars().skip_while(|c| *c == '/').take_while(char::is_ascii_alphanumeric).collect();
         assert!(!name.is_empty(), "<{tag}> is no element");
         let mut attributes = tag.split_whitespace().skip(1).filter(|word| word.contains("=\""));
         assert!(attributes.all(|word| !word.starts_with("on")), "<{tag}> has a handler");

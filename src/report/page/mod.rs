@@ -99,7 +99,7 @@ fn style() -> String {
 /// What undoes the dark colours: every property without a value of its own falls back to paper.
 fn light_theme() -> String {
     let names = DARK_THEME.split(';').filter_map(|declaration| declaration.split(':').next());
-    names.map(|name| format!("{name}:initial;")).collect()
+    names.fold(String::new(), |all, name| all + name + ":initial;")
 }
 
 /// A figure in the page; one over time says where its axes are, so that the replay can point into it.

@@ -119,15 +119,16 @@
 
   // --- Meshes: corners with normals ---------------------------------------------------------------------------------
 
-  // A body of revolution about z through [radius, height] points.
+  // A body of revolution about z through [radius, height] points; where these have a normal as well, it is round there.
   const lathe = (profile, sides) => {
     const corners = [], normals = [], places = [];
     for (let ring = 0; ring + 1 < profile.length; ring++) {
-      const [[r0, z0], [r1, z1]] = [profile[ring], profile[ring + 1]];
-      const slope = Math.hypot(r1 - r0, z1 - z0) || 1, outward = (z1 - z0) / slope, upward = (r0 - r1) / slope;
+      const ends = [profile[ring], profile[ring + 1]], [[r0, z0], [r1, z1]] = ends;
+      const slope = Math.hypot(r1 - r0, z1 - z0) || 1;
       const begin = corners.length / 3;
-      for (let i = 0; i <= sides; i++) for (const [r, z] of [[r0, z0], [r1, z1]]) {
-        const a = 2 * Math.PI * i / sides, c = Math.cos(a), s = Math.sin(a);
+      for (let i = 0; i <= sides; i++) for (const [r, z, outward = (z1 - z0) / slope, upward = (r0 - r1) / slope] of ends) {
+        // The last corner is the first to the bit: the seam has no gap.
+        const a = 2 * Math.PI * (i % sides) / sides, c = Math.cos(a), s = Math.sin(a);
         corners.push(r * c, r * s, z);
         normals.push(outward * c, outward * s, upward);
       }
@@ -137,7 +138,7 @@
   };
   const arc = (from, to, steps, lift) => Array.from({ length: steps + 1 }, (_, i) => {
     const a = from + (to - from) * i / steps;
-    return [Math.cos(a), lift + Math.sin(a)];
+    return [Math.cos(a), lift + Math.sin(a), Math.cos(a), Math.sin(a)];
   });
   const cube = () => {
     const corners = [], normals = [], places = [];
@@ -433,7 +434,10 @@
         gl.clearColor(...colours.sky, 1);
         gl.enable(gl.DEPTH_TEST); gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
+        // The floor is behind everything that stands on it.
+        gl.depthMask(false);
         drawLine(state, floor, [...colours.floor, 0.8], 1);
+        gl.depthMask(true);
         gl.useProgram(solid.made);
         gl.uniformMatrix4fv(solid.uniform.lens, false, state.matrix);
         gl.uniform3f(solid.uniform.ahead, ...state.ahead); gl.uniform3f(solid.uniform.up, ...state.up);

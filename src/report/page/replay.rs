@@ -164,9 +164,9 @@ fn between(robot: &Robot, mut a: usize, mut b: usize) -> Vec<usize> {
     while a != b {
         let Some(above) = parent(a.max(b)) else { break };
         if a > b {
-            a = above
+            a = above;
         } else {
-            b = above
+            b = above;
         }
         links.push(above);
     }

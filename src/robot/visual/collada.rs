@@ -11,6 +11,8 @@ use super::mesh::{MOST_TRIANGLES, Mesh, MeshPart, Triangle, fan};
 
 /// Deepest nesting of nodes that is followed.
 const MOST_DEPTH: usize = 64;
+/// Most nodes that are placed: one may name others over and over.
+const MOST_NODES: usize = 10_000;
 /// Most elements that are read.
 const MOST_ELEMENTS: u32 = 1_000_000;
 
@@ -22,7 +24,7 @@ pub(super) fn read(text: &str) -> Result<Mesh, String> {
     if root.tag_name().name() != "COLLADA" {
         return Err(format!("its root is <{}>, not <COLLADA>", root.tag_name().name()));
     }
-    let mut scene = Scene { by_id: ids(&document), mesh: Mesh::default(), triangles: 0 };
+    let mut scene = Scene { by_id: ids(&document), mesh: Mesh::default(), triangles: 0, nodes: 0 };
     let metres = Matrix4::new_scaling(metres(root));
     let visual = root.descendants().find(|node| node.has_tag_name_of("visual_scene"));
     match visual {
@@ -72,6 +74,7 @@ struct Scene<'a, 'i> {
     by_id: HashMap<&'a str, Node<'a, 'i>>,
     mesh: Mesh,
     triangles: usize,
+    nodes: usize,
 }
 
 impl<'a, 'i> Scene<'a, 'i> {
@@ -89,6 +92,10 @@ impl<'a, 'i> Scene<'a, 'i> {
     }
 
     fn node(&mut self, node: Node<'a, 'i>, above: &Matrix4<f32>, depth: usize) {
+        self.nodes += 1;
+        if self.nodes > MOST_NODES {
+            return;
+        }
         let placed = node.children().filter_map(transform).fold(*above, |pose, next| pose * next);
         for instance in children(node, "instance_geometry") {
             if let Some(geometry) = self.named(instance.attribute("url")) {
@@ -240,5 +247,7 @@ mod tests {
         let text = r##"<COLLADA><library_visual_scenes><visual_scene><node id="a"><instance_node url="#a"/></node>
           </visual_scene></library_visual_scenes></COLLADA>"##;
         assert_eq!(read(text).unwrap().triangles(), 0);
+        let often = text.replace("<instance_node url=\"#a\"/>", &"<instance_node url=\"#a\"/>".repeat(50));
+        assert_eq!(read(&often).unwrap().triangles(), 0);
     }
 }

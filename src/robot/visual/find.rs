@@ -40,7 +40,7 @@ mod tests {
         fs::create_dir_all(&urdf).unwrap();
         fs::create_dir_all(&meshes).unwrap();
         fs::write(meshes.join("a.stl"), "").unwrap();
-        let names = |reference| find_mesh(reference, &urdf).is_some();
+        let names = |reference: &str| find_mesh(reference, &urdf).is_some();
         assert!(names("package://arm_description/meshes/a.stl"));
         assert!(names("../meshes/a.stl"));
         assert!(names(&format!("file://{}", meshes.join("a.stl").display())));

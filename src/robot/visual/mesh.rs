@@ -107,3 +107,32 @@ fn bytes_of(path: &Path) -> io::Result<Vec<u8>> {
 pub(super) fn fan(corners: &[[f32; 3]]) -> impl Iterator<Item = Triangle> {
     corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn an_unknown_format_is_refused_with_the_known_ones() {
+        let reason = Mesh::from_bytes(b"solid", "step").unwrap_err();
+        assert!(reason.contains("stl, obj, dae"), "{reason}");
+        assert!(Mesh::from_bytes(b"", "obj").unwrap_err().contains("no triangle"));
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_make_a_reader_panic(
+            bytes in proptest::collection::vec(any::<u8>(), 0..300), words in "(v|f|vertex| |-?[0-9]{1,3}|/|\n){0,60}",
+        ) {
+            for extension in ["stl", "obj", "dae"] {
+                for bytes in [bytes.as_slice(), words.as_bytes()] {
+                    if let Ok(mesh) = Mesh::from_bytes(bytes, extension) {
+                        prop_assert!(mesh.triangles() > 0);
+                        let _ = mesh.reduced(3);
+                    }
+                }
+            }
+        }
+    }
+}

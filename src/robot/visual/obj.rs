@@ -33,9 +33,12 @@ fn corner(line: &str) -> Result<[f32; 3], String> {
 
 /// Where the corner is that `7`, `7/1/2` or `-1` names: counted from 1, or back from the last.
 fn place(word: &str, count: usize) -> Option<usize> {
-    let number: i64 = word.split('/').next()?.parse().ok()?;
-    let place = if number < 0 { count as i64 + number } else { number - 1 };
-    usize::try_from(place).ok().filter(|&place| place < count)
+    let number = word.split('/').next()?;
+    let place = match number.strip_prefix('-') {
+        Some(back) => count.checked_sub(back.parse().ok()?)?,
+        None => number.parse::<usize>().ok()?.checked_sub(1)?,
+    };
+    (place < count).then_some(place)
 }
 
 #[cfg(test)]
