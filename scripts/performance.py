@@ -232,10 +232,10 @@ lines go through the first and the last point.
 
 ## What limits it
 
-Arithmetic. Two thirds of the instructions of the vector code are additions and multiplications, and none is fused with
-another: fused ones would save about a fifth of a step, but machines without them, and the base instructions, would give other
-bits or be far slower. What is left outside the vector code is gathering references and telling every arm where it
-is. Whole plans are also made and recorded: a sample of two arms writes 320 bytes.
+The vector code, and in it arithmetic: half of its instructions are additions and multiplications, none of them fused with
+another. Fused ones would save up to a fifth of it, but machines without them would give other bits or be far slower. Of a
+step of two arms the history takes a tenth, and gathering references and telling every arm where it is another tenth. Whole
+plans are also made and recorded: a sample of two arms writes 320 bytes.
 """
 
 

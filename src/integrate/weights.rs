@@ -60,7 +60,7 @@ impl<T: Scalar> Weights<T> {
     }
 }
 
-/// One combination of the history. Its loops over blocks are written so that the compiler finds the vectors in them.
+/// One combination of the history. Whole blocks are written at once, so that the compiler finds the vectors in them.
 struct Combination<'a, T> {
     weights: &'a Weights<T>,
     x: &'a Ring<T>,
@@ -83,18 +83,15 @@ impl<T: Scalar> Kernel for Combination<'_, T> {
         let newest = x.blocks(0);
         for (age, weight) in used(&weights.state).skip_while(|&(age, _)| age == 0) {
             for ((sum, sample), newest) in next.iter_mut().zip(x.blocks(age)).zip(newest) {
-                for i in 0..BLOCK {
-                    sum[i] += weight * (sample[i] - newest[i]);
-                }
+                *sum = std::array::from_fn(|i| sum[i] + weight * (sample[i] - newest[i]));
             }
         }
         let mut all_finite = true;
         for (sum, newest) in next.iter_mut().zip(newest) {
-            for i in 0..BLOCK {
-                sum[i] += newest[i];
-            }
+            let total: [T; BLOCK] = std::array::from_fn(|i| sum[i] + newest[i]);
             // Every entry is looked at, whatever the others are: that is quicker than to stop early.
-            all_finite &= sum.iter().fold(true, |all, entry| all & entry.is_finite());
+            all_finite &= total.iter().fold(true, |all, entry| all & entry.is_finite());
+            *sum = total;
         }
         all_finite
     }
@@ -110,9 +107,7 @@ fn used<T: Scalar>(weights: &[T]) -> impl Iterator<Item = (usize, T)> {
 fn add<T: Scalar>(weights: &[T], ring: &Ring<T>, sums: &mut [[T; BLOCK]]) {
     for (age, weight) in used(weights) {
         for (sum, sample) in sums.iter_mut().zip(ring.blocks(age)) {
-            for i in 0..BLOCK {
-                sum[i] += weight * sample[i];
-            }
+            *sum = std::array::from_fn(|i| sum[i] + weight * sample[i]);
         }
     }
 }

@@ -220,8 +220,10 @@ impl Fleet {
             let arms = &mut self.field.arms[course.arms.clone()];
             course.stop = check_lost(arms, course.description.is_stable, t);
             if course.stop.is_none() {
-                arms.iter_mut().for_each(|arm| arm.watch(t));
-                self.remembers |= arms.iter().any(|arm| arm.was_singular);
+                for arm in arms {
+                    arm.watch(t);
+                    self.remembers |= arm.was_singular;
+                }
             }
         }
     }
