@@ -39,7 +39,7 @@ impl Figure {
         svg
     }
 
-    /// Returns where the axes are in the drawing: left, right, top and bottom [px], and the ends of the horizontal axis.
+    /// Returns where the axes are in the drawing: left, right, top and bottom \[px\], and the ends of the horizontal axis.
     pub fn window(&self) -> [f64; 6] {
         let Layout { left, top, width, height, .. } = self.layout();
         [left, left + width, top, top + height, self.x.range.0, self.x.range.1]
