@@ -51,7 +51,9 @@ pub(super) fn run(
     }
     clock.done("writing");
     if output.is_quiet() {
-        grave(&plan).iter().for_each(|sentence| output.remark(sentence));
+        for sentence in grave(&plan) {
+            output.remark(&sentence);
+        }
     }
     if output.wants_json() {
         output.text(&written(&PlanJson, &plan))?;

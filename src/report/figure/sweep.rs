@@ -325,7 +325,8 @@ mod tests {
             format!("case,status,scenario,{},formula,start,steps,max_error,reason\n", keys.join(","));
         for (n, (values, error)) in values.enumerate() {
             let status = if error < 1.0 { "completed" } else { "diverged" };
-            text.push_str(&format!("{n},{status},s,{},ab4,rk4,10,{error:e},\n", values.join(",")));
+            let values = values.join(",");
+            text += &format!("{n},{status},s,{values},ab4,rk4,10,{error:e},\n");
         }
         SweepTable::parse(&text).unwrap()
     }
