@@ -49,7 +49,9 @@ impl SynchronousField {
     /// The same with every arm evaluated by itself.
     pub(super) fn one_by_one(arms: Vec<Arm>, gain: f64, sigma: f64) -> Self {
         let (mut field, apart) = Self::of_shared(arms, gain, sigma);
-        apart.into_iter().for_each(|arm| field.add_members(&[arm], Members::Alone(arm)));
+        for arm in apart {
+            field.add_members(&[arm], Members::Alone(arm));
+        }
         field
     }
 

@@ -318,6 +318,7 @@ fn scatter(key: &Key, listed: Option<&Key>, rows: &[&SweepRow]) -> Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fmt::Write;
 
     fn table(varied: &[&str], values: impl Iterator<Item = (Vec<String>, f64)>) -> SweepTable {
         let keys: Vec<String> = varied.iter().map(|key| format!("varied.{key}")).collect();
@@ -326,7 +327,7 @@ mod tests {
         for (n, (values, error)) in values.enumerate() {
             let status = if error < 1.0 { "completed" } else { "diverged" };
             let values = values.join(",");
-            text += &format!("{n},{status},s,{values},ab4,rk4,10,{error:e},\n");
+            let _ = writeln!(text, "{n},{status},s,{values},ab4,rk4,10,{error:e},");
         }
         SweepTable::parse(&text).unwrap()
     }
