@@ -120,7 +120,7 @@ Examples:
   kinstep export results --format mcap --out bags
   kinstep export theirs.csv --robot panda --base panda_link0 --tip panda_hand_tcp --format mcap
 
-Formats: csv, npz (NumPy), ros2 (trajectory_msgs as YAML), mcap (Foxglove, RViz), moveit (DisplayTrajectory as YAML), all.")]
+Formats: csv, npz (NumPy), parquet (with the feature of that name), ros2 (trajectory_msgs as YAML), mcap (Foxglove, RViz), moveit (DisplayTrajectory as YAML), all.")]
     Export(ExportArguments),
     /// Check a trajectory of any planner against a robot: limits, continuity, rest, the path; exit 1 if a check fails
     #[command(after_help = "\
@@ -163,7 +163,7 @@ pub(super) struct PlanArguments {
     #[command(flatten)]
     pub(super) written: OutArguments,
 
-    /// Further formats of the trajectory, beside csv: npz, ros2, mcap, moveit, or all
+    /// Further formats of the trajectory, beside csv: npz, parquet, ros2, mcap, moveit, or all
     #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', requires = "out")]
     pub(super) format: Vec<String>,
 
@@ -277,7 +277,7 @@ pub(super) struct ExportArguments {
     #[command(flatten)]
     pub(super) robot: TrajectoryRobot,
 
-    /// The formats: csv, npz, ros2, mcap, moveit, or all
+    /// The formats: csv, npz, parquet, ros2, mcap, moveit, or all
     #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', required = true)]
     pub(super) format: Vec<String>,
 
