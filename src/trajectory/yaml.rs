@@ -189,7 +189,7 @@ mod tests {
     fn numbers_have_a_point_and_a_signed_exponent() {
         let mut text = String::new();
         push_numbers(&mut text, [1.0, -0.0, 1e-7, 2.5e22, 0.1].into_iter());
-        assert_eq!(text, "[1.0, -0.0, 1.0e-07, 2.5e+22, 0.1]");
+        assert_eq!(text, "[1.0, -0.0, 1.0e-7, 2.5e+22, 0.1]");
     }
 
     #[test]
