@@ -1,7 +1,7 @@
 """Reads the files of `kinstep plan --out FOLDER --format all` with programs that know nothing of kinstep, and asserts that
 every value is the one of the table, to the last bit: times of messages in nanoseconds, all others as doubles.
 
-The readers: Python's csv, numpy.load, PyYAML, mcap with mcap-ros2-support, and rosbags. Usage: read_back.py FOLDER
+The readers: Python's csv, numpy.load, pyarrow, PyYAML, mcap with mcap-ros2-support, and rosbags. Usage: read_back.py FOLDER
 """
 
 import csv
@@ -10,6 +10,7 @@ import pathlib
 import sys
 
 import numpy
+import pyarrow.parquet
 import yaml
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
@@ -77,6 +78,20 @@ def check_arrays(folder, table, about):
     assert {key: value for key, value in arrays["about"].tolist()} == about
 
 
+def check_parquet(folder, table, about):
+    file = pyarrow.parquet.ParquetFile(folder / "trajectory.parquet")
+    read = file.read()
+    assert read.column_names == table.names
+    for name in table.names:
+        assert str(read.schema.field(name).type) == "double" and read[name].null_count == 0, name
+        assert_same(f"parquet {name}", read[name].to_numpy(), table.columns[name])
+    metadata = file.metadata.metadata
+    assert {key.decode(): value.decode() for key, value in metadata.items()} == about
+    arm = table.arms[0]
+    name = f"{arm}.{table.joints(arm)[0]}"
+    assert name in pyarrow.parquet.read_table(folder / "trajectory.parquet", columns=["t", name]).column_names
+
+
 def check_points(what, message, table, arm):
     """A joint trajectory as PyYAML has it, or as an object with the same fields."""
 
@@ -106,6 +121,15 @@ def check_messages(folder, table):
 def check_start(names, positions, table, arm):
     start = dict(zip(names, positions, strict=True))
     assert_same("start", [start[joint] for joint in table.joints(arm)], table.positions(arm)[0])
+
+
+def frames_shown(times):
+    """Samples with transforms: the first, each that comes 10 ms or more after the one before it, and the last."""
+    count, next_time = 0, 0
+    for index, time in enumerate(times):
+        if time >= next_time or index == len(times) - 1:
+            count, next_time = count + 1, time + 10_000_000
+    return count
 
 
 class Recording:
@@ -167,7 +191,8 @@ class Recording:
                 assert self.counts.pop(f"/{arm}/{topic}") == count, (what, arm, topic)
             moving = {name for name in self.child_frames if name.startswith(f"{arm}/")}
             assert len(moving) == len(self.table.joints(arm)), (what, moving)
-        assert self.counts.pop("/tf") == samples and self.counts.pop("/tf_static") == 1
+        assert self.counts.pop("/tf") == frames_shown(self.table.nanoseconds)
+        assert self.counts.pop("/tf_static") == 1
         assert not self.counts and not self.child_frames & self.static_frames, what
 
 
@@ -197,6 +222,7 @@ def main():
     table = Table(folder)
     about = check_metadata(folder, table)
     check_arrays(folder, table, about)
+    check_parquet(folder, table, about)
     check_messages(folder, table)
     check_by_mcap(folder, table, about)
     check_by_rosbags(folder, table)

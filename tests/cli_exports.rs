@@ -7,8 +7,9 @@ mod cli;
 use cli::{Desk, SMALL};
 use kinstep::trajectory::Trajectory;
 
-const EVERYTHING: [&str; 8] = [
+const EVERYTHING: &[&str] = &[
     "plan.json",
+    "report.html",
     "scenario.toml",
     "trajectory.csv",
     "trajectory.csv-metadata.json",
@@ -16,6 +17,8 @@ const EVERYTHING: [&str; 8] = [
     "trajectory.left.yaml",
     "trajectory.mcap",
     "trajectory.npz",
+    #[cfg(feature = "parquet")]
+    "trajectory.parquet",
 ];
 
 /// An arm that ends in motion.
@@ -29,7 +32,7 @@ fn a_plan_is_written_in_every_format_and_exported_again_to_the_same_bytes() {
     desk.run(&["plan", "s.toml", "--out", "o", "--format", "all"]).expect(0);
     assert_eq!(desk.names("o"), EVERYTHING);
     let run = desk.run(&["export", "o", "--format", "all", "--out", "again", "--json"]).expect(0);
-    assert_eq!(run.json()["written"].as_array().unwrap().len(), 6);
+    assert_eq!(run.json()["written"].as_array().unwrap().len(), EVERYTHING.len() - 3);
     for name in desk.names("again") {
         let [one, two] = ["o", "again"].map(|folder| std::fs::read(desk.path(folder).join(&name)).unwrap());
         assert!(one == two, "{name} differs");
@@ -42,6 +45,19 @@ fn a_plan_is_written_in_every_format_and_exported_again_to_the_same_bytes() {
         assert_eq!(other.arms[0].positions, table.arms[0].positions, "{name}");
         assert_eq!(other.arms[0].velocities, table.arms[0].velocities, "{name}");
     }
+    #[cfg(feature = "parquet")]
+    assert_eq!(Trajectory::read(desk.path("o/trajectory.parquet")).unwrap(), table);
+}
+
+#[cfg(not(feature = "parquet"))]
+#[test]
+fn parquet_names_the_feature_that_it_takes() {
+    let desk = Desk::new(&[("s.toml", SMALL), ("a.parquet", "PAR1")]);
+    let run = desk.run(&["plan", "s.toml", "--out", "o", "--format", "parquet"]).expect(2);
+    assert!(run.err.contains("--features parquet"), "{}", run.err);
+    assert_eq!(desk.names("."), ["a.parquet", "s.toml"]);
+    let run = desk.run(&["check", "a.parquet", "--robot", "planar4"]).expect(2);
+    assert!(run.err.contains("--features parquet"), "{}", run.err);
 }
 
 #[test]
@@ -149,7 +165,7 @@ fn what_can_not_be_written_is_exit_6_and_leaves_nothing() {
     desk.run(&["export", "o/scenario.toml", "--format", "npz"]).expect(2);
     std::fs::remove_file(desk.path("o/scenario.toml")).unwrap();
     desk.run(&["export", "o", "--format", "npz"]).expect(6);
-    assert_eq!(desk.names("o").len(), 3);
+    assert_eq!(desk.names("o").len(), 4);
 }
 
 #[cfg(unix)]

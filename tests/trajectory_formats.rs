@@ -7,6 +7,8 @@ mod trajectories;
 use kinstep::nalgebra::IsometryMatrix3;
 use kinstep::robot::embedded;
 use kinstep::task::TaskKind;
+#[cfg(feature = "parquet")]
+use kinstep::trajectory::Parquet;
 use kinstep::trajectory::{
     ArmTrajectory, Machine, Mcap, MoveItYaml, Npz, Recording, Ros2Yaml, Stage, StagedArm, Trajectory,
     TrajectoryFormat,
@@ -61,6 +63,15 @@ proptest! {
         prop_assert_eq!(written(&Npz, &trajectory), bytes);
     }
 
+    #[cfg(feature = "parquet")]
+    #[test]
+    fn tables_of_parquet_read_back_as_they_were(trajectory in trajectories()) {
+        let bytes = written(&Parquet, &trajectory);
+        assert_same_bits(&read("a.parquet", &bytes), &trajectory);
+        assert_same_bits(&read("a.unknown", &bytes), &trajectory);
+        prop_assert_eq!(written(&Parquet, &trajectory), bytes);
+    }
+
     #[test]
     fn recordings_read_back_as_they_were(trajectory in trajectories()) {
         let bytes = written(&Mcap, &trajectory);
@@ -92,12 +103,45 @@ proptest! {
     ) {
         let trajectory = at_rest(trajectory);
         let yaml = Ros2Yaml { machine: trajectory.arms[0].name.clone() };
-        for (name, format) in [("a.npz", &Npz as &dyn TrajectoryFormat), ("a.mcap", &Mcap), ("a.yaml", &yaml)] {
+        let formats = [
+            ("a.npz", &Npz as &dyn TrajectoryFormat),
+            ("a.mcap", &Mcap),
+            ("a.yaml", &yaml),
+            #[cfg(feature = "parquet")]
+            ("a.parquet", &Parquet),
+        ];
+        for (name, format) in formats {
             let mut bytes = written(format, &trajectory);
             let at = place.index(bytes.len());
             if cuts { bytes.truncate(at) } else { bytes[at] ^= byte }
             let _ = Trajectory::from_bytes(name.as_ref(), &bytes);
         }
+    }
+}
+
+#[cfg(feature = "parquet")]
+#[test]
+fn a_table_of_parquet_is_written_in_groups_that_memory_holds() {
+    let footer = |samples: u32| -> u32 {
+        let times: Vec<f64> = (0..samples).map(|n| f64::from(n) * 0.001).collect();
+        let long = moving(&times);
+        let bytes = written(&Parquet, &long);
+        assert_same_bits(&read("a.parquet", &bytes), &long);
+        // The footer's length stands in front of the last four bytes.
+        u32::from_le_bytes(*bytes[..bytes.len() - 4].last_chunk().unwrap())
+    };
+    // Four columns of 2^18 rows fill a group; the footer lists the columns of every group, and does not grow with the rows.
+    let [short, full, more] = [1_000, 1 << 18, (1 << 18) + 1].map(footer);
+    assert!(full < short + 64 && more > full + 128, "{short} {full} {more}");
+}
+
+#[cfg(feature = "parquet")]
+#[test]
+fn a_table_of_parquet_that_is_cut_short_says_what_it_is() {
+    let bytes = written(&Parquet, &moving(&[0.0, 0.1]));
+    for end in 4..bytes.len() {
+        let error = Trajectory::from_bytes("a.parquet".as_ref(), &bytes[..end]).unwrap_err();
+        assert!(error.message.contains("Parquet"), "{error}");
     }
 }
 
@@ -215,5 +259,15 @@ fn a_recording_has_the_robots_that_move() {
     let two = topics(&trajectory, &stage);
     for topic in ["/left_arm/joint_states", "/left_arm/robot_description", "/right/joint_trajectory"] {
         assert!(two.iter().any(|(name, _)| name == topic), "{two:?}");
+    }
+    // Frames at 0, 10 and 20 ms and at the last sample; states at every sample.
+    trajectory.arms.pop();
+    let dense: Vec<f64> = (0..22).map(|n| f64::from(n) * 0.001).collect();
+    let joints = trajectory.arms[0].joints.len();
+    trajectory.arms[0].positions = vec![0.1; dense.len() * joints];
+    trajectory.times = dense;
+    let dense = topics(&trajectory, &stage);
+    for topic in [("/joint_states", 22), ("/tf", 4)] {
+        assert!(dense.contains(&named(&[topic])[0]), "{dense:?}");
     }
 }

@@ -23,17 +23,27 @@ pub(super) struct Exports {
 
 /// Returns the formats that are named, in the order of the listing; `first` is always among them.
 pub(super) fn formats(names: &[String], first: &[Export]) -> Result<Vec<Export>, Failure> {
-    let known = || Export::ALL.iter().map(|format| format.name());
     let mut chosen: Vec<Export> = first.to_vec();
     for name in names.iter().map(|name| name.trim()).filter(|name| *name != ALL) {
-        let format = Export::ALL.iter().find(|format| format.name() == name).ok_or_else(|| {
-            let hint = suggestion(name, known().chain([ALL]));
-            Failure::usage(format!("--format: there is no format \"{name}\"; {hint}"))
-        })?;
+        let format = Export::ALL.iter().find(|format| format.name() == name);
+        let format = format.ok_or_else(|| unknown(name))?;
         chosen.push(*format);
     }
     let all = names.iter().any(|name| name.trim() == ALL);
     Ok(Export::ALL.iter().copied().filter(|format| all || chosen.contains(format)).collect())
+}
+
+/// The refusal of a format that this program does not have.
+fn unknown(name: &str) -> Failure {
+    if !cfg!(feature = "parquet") && name == "parquet" {
+        let remedy = "build it with --features parquet, or take csv or npz";
+        return Failure::usage(format!(
+            "--format parquet: this program was built without the feature parquet; {remedy}"
+        ));
+    }
+    let known = Export::ALL.iter().map(|format| format.name());
+    let hint = suggestion(name, known.chain([ALL]));
+    Failure::usage(format!("--format: there is no format \"{name}\"; {hint}"))
 }
 
 impl Exports {

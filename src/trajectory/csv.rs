@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use super::csv_layout::{Layout, Role};
 use super::csv_records::{Field, Records, quoted};
+use super::digits::push_full;
 use super::error::Problem;
 use super::read::{Source, TrajectoryReader, not_later};
 use super::{Recording, Trajectory, TrajectoryFormat, csv_metadata};
@@ -23,12 +24,16 @@ impl TrajectoryFormat for Csv {
         let names = trajectory.columns();
         let header: Vec<_> = names.iter().map(|name| quoted(name)).collect();
         writeln!(out, "{}", header.join(","))?;
+        let mut line = Vec::new();
         for (sample, time) in trajectory.times.iter().enumerate() {
-            write!(out, "{time:.16e}")?;
+            line.clear();
+            push_full(&mut line, *time);
             for value in trajectory.values(sample) {
-                write!(out, ",{value:.16e}")?;
+                line.push(b',');
+                push_full(&mut line, value);
             }
-            writeln!(out)?;
+            line.push(b'\n');
+            out.write_all(&line)?;
         }
         Ok(())
     }

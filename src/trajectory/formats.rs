@@ -1,5 +1,7 @@
 //! The formats by their names, and the files that each of them makes.
 
+#[cfg(feature = "parquet")]
+use super::Parquet;
 use super::group::Group;
 use super::{Csv, CsvMetadata, Mcap, MoveItYaml, Npz, Recording, Ros2Yaml, TrajectoryFormat};
 
@@ -13,6 +15,9 @@ pub enum Export {
     Csv,
     /// NumPy arrays.
     Npz,
+    /// A table of Apache Parquet.
+    #[cfg(feature = "parquet")]
+    Parquet,
     /// Messages `trajectory_msgs/JointTrajectory` as YAML, one file for each machine.
     Ros2,
     /// A recording of the Robot Operating System.
@@ -37,13 +42,23 @@ impl std::fmt::Debug for ExportFile {
 
 impl Export {
     /// Every format, for listings.
-    pub const ALL: &'static [Self] = &[Self::Csv, Self::Npz, Self::Ros2, Self::Mcap, Self::MoveIt];
+    pub const ALL: &'static [Self] = &[
+        Self::Csv,
+        Self::Npz,
+        #[cfg(feature = "parquet")]
+        Self::Parquet,
+        Self::Ros2,
+        Self::Mcap,
+        Self::MoveIt,
+    ];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Csv => "csv",
             Self::Npz => "npz",
+            #[cfg(feature = "parquet")]
+            Self::Parquet => "parquet",
             Self::Ros2 => "ros2",
             Self::Mcap => "mcap",
             Self::MoveIt => "moveit",
@@ -69,6 +84,8 @@ impl Export {
                 vec![file(format!("{STEM}.csv"), Box::new(Csv)), file(name, Box::new(metadata))]
             }
             Self::Npz => vec![file(format!("{STEM}.npz"), Box::new(Npz))],
+            #[cfg(feature = "parquet")]
+            Self::Parquet => vec![file(format!("{STEM}.parquet"), Box::new(Parquet))],
             Self::Mcap => vec![file(format!("{STEM}.mcap"), Box::new(Mcap))],
             Self::Ros2 => machines
                 .iter()

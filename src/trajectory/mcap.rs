@@ -25,6 +25,8 @@ const WORLD: &str = "world";
 const ABOUT: &str = "kinstep";
 /// The entry of a channel's metadata that has the machine's name as it is.
 const MACHINE: &str = "kinstep.machine";
+/// The least time between transforms [ns]: screens show sixty pictures a second, and viewers interpolate.
+const FRAME_GAP: u64 = 10_000_000;
 /// The most poses of a path that is drawn.
 const LONGEST_PATH: usize = 10_000;
 /// The quality of service of topics that late listeners get too: reliable, with the last message kept.
@@ -39,7 +41,7 @@ const LATCHED: &str = "- history: 1\n  depth: 1\n  reliability: 1\n  durability:
 /// that do not move in their parents, and where the robots stand in `world`), `joint_trajectory`
 /// (`trajectory_msgs/JointTrajectory`), `display_planned_path` (`moveit_msgs/DisplayTrajectory`), and of every arm
 /// `ARM/path` (`nav_msgs/Path`, at most 10,000 poses). At every sample: `joint_states` (`sensor_msgs/JointState`, all joints
-/// of the robot) and `/tf` (`tf2_msgs/TFMessage`).
+/// of the robot). `/tf` (`tf2_msgs/TFMessage`) at most 100 times per second of motion, with the first and the last sample.
 ///
 /// With one machine, topics and frames have plain names. With several, the topics of each are in a namespace, `/MACHINE/...`,
 /// and its frames are `MACHINE/LINK`: the prefix that RViz calls "TF Prefix" and Foxglove "frame prefix". Joints keep the
@@ -137,12 +139,15 @@ impl<W: Write> Bag<W> {
         }
         self.paths(recording)?;
         let transforms = self.channel("/tf", "tf2_msgs/TFMessage", false)?;
+        let has_frames = moving.iter().any(|machine| machine.transforms.is_some());
+        let (mut next, last) = (0, trajectory.samples().saturating_sub(1));
         for sample in 0..trajectory.samples() {
             let stamp = stamp(trajectory, sample);
             for machine in &mut moving {
                 self.states(machine, sample, stamp)?;
             }
-            if moving.iter().any(|machine| machine.transforms.is_some()) {
+            if has_frames && (stamp.nanoseconds() >= next || sample == last) {
+                next = stamp.nanoseconds() + FRAME_GAP;
                 self.transforms(&mut moving, sample, stamp, true);
                 self.send(transforms, stamp)?;
             }

@@ -12,6 +12,7 @@ mod csv;
 mod csv_layout;
 mod csv_metadata;
 mod csv_records;
+mod digits;
 mod error;
 mod format;
 mod formats;
@@ -21,6 +22,10 @@ mod mcap;
 mod mcap_records;
 mod npy;
 mod npz;
+#[cfg(feature = "parquet")]
+mod parquet;
+#[cfg(not(feature = "parquet"))]
+mod parquet_absent;
 mod read;
 mod ros2_schema;
 mod ros2_yaml;
@@ -30,6 +35,8 @@ mod trajectory;
 mod yaml;
 
 pub use self::mcap::Mcap;
+#[cfg(feature = "parquet")]
+pub use self::parquet::Parquet;
 pub use about::About;
 pub use controller::Refusal;
 pub use csv::Csv;

@@ -4,7 +4,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+#[cfg(feature = "parquet")]
+use super::Parquet;
 use super::error::{Problem, TrajectoryError, TrajectoryErrorKind};
+#[cfg(not(feature = "parquet"))]
+use super::parquet_absent::ParquetAbsent;
 use super::{Csv, Mcap, Npz, Ros2Yaml, Trajectory};
 
 /// The longest file that is read [bytes].
@@ -55,11 +59,20 @@ pub trait TrajectoryReader {
 }
 
 /// The formats, those with unmistakable first bytes first; the last one takes everything.
-const READERS: &[&dyn TrajectoryReader] = &[&Npz, &Mcap, &Ros2Yaml { machine: String::new() }, &Csv];
+const READERS: &[&dyn TrajectoryReader] = &[
+    &Npz,
+    &Mcap,
+    #[cfg(feature = "parquet")]
+    &Parquet,
+    #[cfg(not(feature = "parquet"))]
+    &ParquetAbsent,
+    &Ros2Yaml { machine: String::new() },
+    &Csv,
+];
 
 impl Trajectory {
     /// Returns the trajectory in a file of any format that can be read: comma-separated values, NumPy
-    /// arrays, messages as YAML, recordings (MCAP).
+    /// arrays, tables of Parquet (with the feature of that name), messages as YAML, recordings (MCAP).
     ///
     /// # Errors
     /// [`TrajectoryError`] with the place where the text is wrong: the file can not be read, its values are not finite,

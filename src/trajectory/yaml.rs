@@ -2,10 +2,10 @@
 //! numbers.
 
 use std::borrow::Cow;
-use std::fmt::Write;
 
 use granit_parser::{Event, Parser, ScanError, Span};
 
+use super::digits::push_shortest;
 use super::error::Problem;
 
 /// A node of a document, and the byte at which it begins.
@@ -176,23 +176,9 @@ pub(super) fn push_numbers(text: &mut String, values: impl Iterator<Item = f64>)
     text.push('[');
     for (index, value) in values.enumerate() {
         text.push_str(if index == 0 { "" } else { ", " });
-        push_number(text, value);
+        push_shortest(text, value);
     }
     text.push(']');
-}
-
-/// In YAML 1.1, as Python reads it, a number has a point, and its exponent a sign; without them it is text.
-fn push_number(text: &mut String, value: f64) {
-    let begin = text.len();
-    // Writing to a String can not fail.
-    let _ = write!(text, "{value:?}");
-    let Some(exponent) = text[begin..].find('e').map(|at| begin + at) else { return };
-    if !text[exponent + 1..].starts_with('-') {
-        text.insert(exponent + 1, '+');
-    }
-    if !text[begin..exponent].contains('.') {
-        text.insert_str(exponent, ".0");
-    }
 }
 
 #[cfg(test)]

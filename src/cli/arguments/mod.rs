@@ -130,7 +130,7 @@ Examples:
   kinstep export results --format mcap --out bags
   kinstep export theirs.csv --robot panda --base panda_link0 --tip panda_hand_tcp --format mcap
 
-Formats: csv, npz (NumPy), ros2 (trajectory_msgs as YAML), mcap (Foxglove, RViz), moveit (DisplayTrajectory as YAML), all.")]
+Formats: csv, npz (NumPy), parquet (with the feature of that name), ros2 (trajectory_msgs as YAML), mcap (Foxglove, RViz), moveit (DisplayTrajectory as YAML), all.")]
     Export(ExportArguments),
     /// Check a trajectory of any planner against a robot: limits, continuity, rest, the path; exit 1 if a check fails
     #[command(after_help = "\

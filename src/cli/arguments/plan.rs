@@ -14,7 +14,7 @@ pub(in crate::cli) struct PlanArguments {
     #[command(flatten)]
     pub(in crate::cli) written: OutArguments,
 
-    /// Further formats of the trajectory, beside csv: npz, ros2, mcap, moveit, or all
+    /// Further formats of the trajectory, beside csv: npz, parquet, ros2, mcap, moveit, or all
     #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', requires = "out")]
     pub(in crate::cli) format: Vec<String>,
 
@@ -128,7 +128,7 @@ pub(in crate::cli) struct ExportArguments {
     #[command(flatten)]
     pub(in crate::cli) robot: TrajectoryRobot,
 
-    /// The formats: csv, npz, ros2, mcap, moveit, or all
+    /// The formats: csv, npz, parquet, ros2, mcap, moveit, or all
     #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', required = true)]
     pub(in crate::cli) format: Vec<String>,
 
