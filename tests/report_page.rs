@@ -96,6 +96,15 @@ fn check(html: &str) {
 }
 
 #[test]
+fn a_page_says_what_noise_the_loop_suffered() {
+    let (plan, stage, scenario) = run(PLANAR, &["noise.position=1e-4", "noise.seed=3"], None);
+    let html = page_of(&plan, &stage, &scenario);
+    assert!(html.contains("white noise of seed 3: 1.0e-4 m in the measured position"));
+    let (plan, stage, scenario) = run(PLANAR, &[], None);
+    assert!(!page_of(&plan, &stage, &scenario).contains("noise of seed"));
+}
+
+#[test]
 fn a_page_tells_of_its_plan_and_is_the_same_every_time() {
     let (plan, stage, scenario) = run(PLANAR, &["duration=0.5"], None);
     let html = page_of(&plan, &stage, &scenario);

@@ -53,13 +53,15 @@ impl PlanFormat for PlanText {
     }
 }
 
-fn disturbed_by(noise: &Noise) -> String {
+/// Says what noise a loop suffered.
+pub(super) fn disturbed_by(noise: &Noise) -> String {
     let loud = noise.deviations().into_iter().filter(|deviation| deviation.3 > 0.0);
     let loud: Vec<_> = loud.map(|(_, of, unit, value)| format!("{} {unit} in {of}", short(value))).collect();
     format!("white noise of seed {}: {}", noise.seed, loud.join(", "))
 }
 
-fn mean_squares(plan: &Plan) -> String {
+/// The root mean squares of the errors of all arms, where they are steady.
+pub(super) fn mean_squares(plan: &Plan) -> String {
     let figures = plan.arms.iter().map(|arm| format!("{} {:.2e}", arm.name, arm.rms_error_steady));
     figures.collect::<Vec<_>>().join(", ")
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::PlanPage;
 use super::markup::{escaped, plain};
 use crate::planner::{ArmPlan, Plan, PlanStatus};
+use crate::report::plan_text::{disturbed_by, mean_squares};
 use crate::report::short;
 
 /// What was planned, in one line.
@@ -30,6 +31,15 @@ pub(super) fn lead(page: &PlanPage<'_>) -> String {
         let (arms, joints) = (shared.arms.join(" and "), shared.joints.join(", "));
         // Writing to a String can not fail.
         let _ = write!(html, "<p>{} share {}: solved as one system.</p>", escaped(&arms), escaped(&joints));
+    }
+    if let Some(noise) = &plan.noise {
+        let (noise, errors) = (disturbed_by(noise), mean_squares(plan));
+        let _ = write!(
+            html,
+            "<p>The loop suffered {}. Root mean square of the error in the second half: {}.</p>",
+            escaped(&noise),
+            escaped(&errors)
+        );
     }
     html
 }
