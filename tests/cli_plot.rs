@@ -96,8 +96,8 @@ fn arms_joints_times_and_sizes_are_chosen() {
         let error = plot(wrong).expect(2).err;
         assert!(error.contains(told), "{wrong:?}: {error}");
     }
-    desk.run(&["plot", "saved", "--out", "chosen"]).expect(0);
-    desk.run(&["plot", "saved", "--out", "chosen"]).expect(6);
+    desk.run(&["plot", "saved", "--out", "all"]).expect(0);
+    desk.run(&["plot", "saved", "--out", "all"]).expect(6);
 }
 
 #[test]

@@ -161,7 +161,7 @@ impl Against {
         let mut failures: Vec<String> = clock
             .repeated
             .map(|(count, t)| {
-                format!("{count} samples repeat the one before in mid-motion, first at t = {t} s")
+                format!("{count} samples repeat the one before in mid-motion, first at t = {} s", moment(t))
             })
             .into_iter()
             .collect();
@@ -236,6 +236,11 @@ fn worst_error(arm: &ArmTrajectory, path: &Arm, times: &[f64]) -> Met {
     worst
 }
 
+/// A time without the digits that a sum of gaps leaves behind.
+fn moment(t: f64) -> String {
+    format!("{t:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
 /// What failed of an arm, as sentences.
 fn failed(arm: &str, figures: &[JointFigures], error: Option<Met>, max_error: f64) -> Vec<String> {
     let mut failures = Vec::new();
@@ -245,17 +250,21 @@ fn failed(arm: &str, figures: &[JointFigures], error: Option<Met>, max_error: f6
             let (kind, value, limit) = (crossed.kind.name(), short(crossed.value), short(crossed.limit));
             failures.push(format!(
                 "{arm}.{joint}: {kind} {value} crosses its limit {limit} at t = {} s",
-                crossed.t
+                moment(crossed.t)
             ));
         }
         for jump in &figures.jumps {
-            failures.push(format!("{arm}.{joint}: jumps by {} at t = {} s", short(jump.value), jump.t));
+            failures.push(format!(
+                "{arm}.{joint}: jumps by {} at t = {} s",
+                short(jump.value),
+                moment(jump.t)
+            ));
         }
         if let Some(apart) = figures.disagreement.filter(|_| !figures.agrees()) {
             failures.push(format!(
                 "{arm}.{joint}: the declared velocity differs by {} from that of the positions at t = {} s",
                 short(apart.value),
-                apart.t
+                moment(apart.t)
             ));
         }
     }
@@ -269,8 +278,10 @@ fn failed(arm: &str, figures: &[JointFigures], error: Option<Met>, max_error: f6
     }
     if let Some(error) = error.filter(|error| !(error.value <= max_error)) {
         let (value, bound) = (short(error.value), short(max_error));
-        failures
-            .push(format!("{arm}: a task error of {value} at t = {} s, above --max-error {bound}", error.t));
+        failures.push(format!(
+            "{arm}: a task error of {value} at t = {} s, above --max-error {bound}",
+            moment(error.t)
+        ));
     }
     failures
 }
@@ -331,7 +342,8 @@ impl Show for Checked {
         // Writing to a String can not fail.
         for arm in &self.arms {
             if let (Some(error), Some(t)) = (arm.max_error, arm.max_error_at) {
-                let _ = writeln!(text, "{}: worst task error {} at t = {t} s", arm.name, short(error));
+                let _ =
+                    writeln!(text, "{}: worst task error {} at t = {} s", arm.name, short(error), moment(t));
             }
         }
         match self.failures.as_slice() {

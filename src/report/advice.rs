@@ -55,14 +55,14 @@ pub fn suggestions(plan: &Plan, table: &FormulaTable, scenario: &Scenario) -> Ve
     next
 }
 
-/// Whether a smaller gap may be promised to make the errors smaller: they stand above the round-off, and the loop is fast
-/// enough to settle within the run.
+/// Whether a smaller gap may be promised to make the errors smaller: they stand above the round-off and are not those of
+/// noise, and the loop is fast enough to settle within the run.
 fn errors_follow_the_order(plan: &Plan, formula: &Formula) -> bool {
     const ROUND_OFF: f64 = 1e-13;
     const SETTLED: f64 = 1e-3;
     let worst = plan.arms.iter().map(|arm| arm.max_error).fold(0.0, f64::max);
     let left_over = formula.spectral_radius(plan.h).powf(plan.steps as f64 / 2.0);
-    worst > ROUND_OFF && left_over < SETTLED
+    worst > ROUND_OFF && left_over < SETTLED && plan.noise.is_none()
 }
 
 /// By what factor the worst joint velocity exceeds its limit, where one does: velocities fall like 1/duration.
