@@ -61,7 +61,7 @@ pub enum Mark {
         points: Vec<(f64, f64)>,
         /// Which colour.
         style: usize,
-        /// How wide [px].
+        /// How wide \[px\].
         width: f64,
         /// How much of what is below it hides: 1 for everything.
         opacity: f64,
@@ -128,7 +128,7 @@ pub struct Figure {
     pub is_isometric: bool,
     /// What has to be known to read it, in a sentence or two below it; empty for nothing.
     pub caption: String,
-    /// How wide and high the whole drawing is to be [px]; without it the drawing takes the room that it needs.
+    /// How wide and high the whole drawing is to be \[px\]; without it the drawing takes the room that it needs.
     pub size: Option<(f64, f64)>,
     /// What a point of a line is taken at: the last column of the CSV file.
     pub parameter: Option<String>,

@@ -121,7 +121,7 @@ impl<'a> PlanFigures<'a> {
         self
     }
 
-    /// Draws pictures of this size [px].
+    /// Draws pictures of this size \[px\].
     #[must_use]
     pub fn of_size(mut self, size: Option<(f64, f64)>) -> Self {
         self.size = size;
