@@ -2,6 +2,7 @@
 # Opens pages of `kinstep plan --out` in a browser and looks whether they do what docs/report.md says.
 # Installs what is missing (as root, on Debian): chromium, node with npm, and playwright-core into a temporary folder.
 #   scripts/page_check.sh [FOLDER FOR SCREENSHOTS]
+# KINSTEP names the program, if it is not to be built.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -23,8 +24,11 @@ cp scripts/page_check.mjs "$desk/"
 echo "installed what was missing in $((SECONDS - begin)) s"
 
 begin=$SECONDS
-cargo build --quiet --all-features
-kinstep=${CARGO_TARGET_DIR:-target}/debug/kinstep
+kinstep=${KINSTEP:-}
+if [ -z "$kinstep" ]; then
+    cargo build --quiet --all-features
+    kinstep=${CARGO_TARGET_DIR:-target}/debug/kinstep
+fi
 plan() {
     local name=$1 expected=$2 code=0
     shift 2
