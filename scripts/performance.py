@@ -49,7 +49,6 @@ PEER_WORKS = {"kinematics panda", "step 2 pandas"}
 # What the figure shows: (name of the works, label, sizes).
 SIZES = [
     ("arms", "Panda arms in one plan", [1, 2, 3, 4, 6, 8, 10, 12, 14, 16]),
-    ("joints", "joints of each of two arms", [6, 7, 8, 10, 12, 14, 16]),
 ]
 
 
