@@ -180,6 +180,9 @@ fn stepped(begin: impl Fn() -> Planner + 'static) -> Work {
     let mut running = begin();
     Box::new(move || {
         if running.is_finished() {
+            if let Some(stop) = running.stop() {
+                panic!("what is measured is no step: {}", stop.reason);
+            }
             running = begin();
         }
         running.step();

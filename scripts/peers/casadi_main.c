@@ -53,16 +53,16 @@ static void step(Arm* arm) {
     // gamma sums to 2 in this row: h = sigma k gamma(1).
     const double gain = H / (SIGMA * 2.0);
     const Reference* wanted = &arm->path[arm->n % STEPS];
-    double f[JOINTS], g[JOINTS];
+    double velocity[JOINTS];
     const double* inputs[] = {arm->states[arm->newest], wanted->position, wanted->rotation, wanted->twist, &gain};
-    double* outputs[] = {f, g};
+    double* outputs[] = {velocity};
     evaluation(inputs, outputs, NULL, NULL, 0);
     const double* at[STATES];
     for (int age = 0; age < STATES; ++age) at[age] = arm->states[(arm->newest + age) % STATES];
     double next[JOINTS];
     for (int i = 0; i < JOINTS; ++i)
         next[i] = (5.0 / 24) * at[0][i] + (12.0 / 24) * at[1][i] + (6.0 / 24) * at[2][i] + (4.0 / 24) * at[3][i] -
-                  (3.0 / 24) * at[4][i] + 2.0 * SIGMA * (f[i] + g[i]);
+                  (3.0 / 24) * at[4][i] + 2.0 * SIGMA * velocity[i];
     arm->newest = (arm->newest + STATES - 1) % STATES;
     memcpy(arm->states[arm->newest], next, sizeof next);
     ++arm->n;

@@ -1,7 +1,7 @@
 """Writes C code for the Panda by CasADi: `casadi_panda.py URDF FOLDER`.
 
 Two functions with all sizes known: pose and Jacobian of the flange, and the evaluation of a control step (kinematics,
-Jacobian, residual, L D L^T solve of the normal equations for feedforward and feedback). Expressions are expanded to scalars, so
+Jacobian, residual, one L D L^T solve of the normal equations for feedforward and feedback together). Expressions are expanded to scalars, so
 that common subexpressions are shared and known zeros vanish: what CasADi is chosen for.
 """
 
@@ -64,8 +64,8 @@ def residual(position, rotation, wanted, wanted_rotation):
     return ca.vertcat(position - wanted, sine * factor)
 
 
-def solve(gram, *sides):
-    """The solutions of `gram y = side` by L D L^T."""
+def solve(gram, side):
+    """The solution of `gram y = side` by L D L^T."""
     size = gram.shape[0]
     lower, pivots = [[0] * size for _ in range(size)], [0] * size
     for i in range(size):
@@ -73,18 +73,15 @@ def solve(gram, *sides):
             rest = gram[i, j] - sum(lower[i][k] * lower[j][k] * pivots[k] for k in range(j))
             lower[i][j] = rest / pivots[j]
         pivots[i] = gram[i, i] - sum(lower[i][k] ** 2 * pivots[k] for k in range(i))
-    solutions = []
-    for side in sides:
-        y = [side[i] for i in range(size)]
-        for i in range(size):
-            for j in range(i):
-                y[i] = y[i] - lower[i][j] * y[j]
-        y = [entry / pivot for entry, pivot in zip(y, pivots)]
-        for i in reversed(range(size)):
-            for j in range(i + 1, size):
-                y[i] = y[i] - lower[j][i] * y[j]
-        solutions.append(ca.vertcat(*y))
-    return solutions
+    y = [side[i] for i in range(size)]
+    for i in range(size):
+        for j in range(i):
+            y[i] = y[i] - lower[i][j] * y[j]
+    y = [entry / pivot for entry, pivot in zip(y, pivots)]
+    for i in reversed(range(size)):
+        for j in range(i + 1, size):
+            y[i] = y[i] - lower[j][i] * y[j]
+    return ca.vertcat(*y)
 
 
 def main():
@@ -94,8 +91,8 @@ def main():
     position, rotation, jacobian = kinematics(urdf, q)
     pose = ca.Function("pose", [q], [position, rotation, jacobian])
     error = residual(position, rotation, wanted, wanted_rotation)
-    forward, back = solve(jacobian @ jacobian.T, twist, -gain * error)
-    inputs, outputs = [q, wanted, wanted_rotation, twist, gain], [jacobian.T @ forward, jacobian.T @ back]
+    inputs = [q, wanted, wanted_rotation, twist, gain]
+    outputs = [jacobian.T @ solve(jacobian @ jacobian.T, twist - gain * error)]
     evaluation = ca.Function("evaluation", inputs, outputs, {"cse": True})
     generator = ca.CodeGenerator("panda_generated.c", {"with_header": True})
     generator.add(pose)

@@ -42,7 +42,7 @@ struct Arm {
     pinocchio::Data data;
     pinocchio::FrameIndex tip;
     std::vector<Reference> path;
-    Vector7 q, f, g;
+    Vector7 q, velocity;
     std::vector<Vector7> states;
     Jacobian jacobian;
     int newest = 0, n = 0;
@@ -78,18 +78,15 @@ struct Arm {
         const double gain = H / (SIGMA * 2.0);
         const Matrix6 gram = jacobian.lazyProduct(jacobian.transpose());
         const Eigen::LDLT<Matrix6> factor(gram);
-        Eigen::Matrix<double, 6, 2> wishes, solved;
-        wishes.col(0) = wanted.twist;
-        wishes.col(1) = -gain * error;
-        solved = factor.solve(wishes);
-        f.noalias() = jacobian.transpose() * solved.col(0);
-        g.noalias() = jacobian.transpose() * solved.col(1);
+        // Feedforward and feedback in one: nobody asks for them one by one here.
+        const Vector6 solved = factor.solve(wanted.twist - gain * error);
+        velocity.noalias() = jacobian.transpose() * solved;
         // The row solved for its newest state.
         const auto& at = [&](int age) -> const Vector7& { return states[(newest + age) % 6]; };
         newest = (newest + 5) % 6;
         Vector7& next = states[newest];
         next = (5.0 / 24) * at(1) + (12.0 / 24) * at(2) + (6.0 / 24) * at(3) + (4.0 / 24) * at(4) - (3.0 / 24) * at(5) +
-               2.0 * SIGMA * (f + g);
+               2.0 * SIGMA * velocity;
         q = next;
         ++n;
     }

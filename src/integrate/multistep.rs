@@ -1,6 +1,6 @@
 use super::ring::{BLOCK, Ring};
 use super::runge_kutta::RungeKutta;
-use super::weights::Weights;
+use super::weights::{Terms, Weights};
 use super::{Field, Parts, Scalar, Starter, Tableau};
 use crate::formula::{Formula, NotRunnable};
 use fearless_simd::Level;
@@ -113,9 +113,9 @@ impl<T: Scalar> Multistep<T> {
         let mut stepper = Self {
             // One state more than a row of one step needs, for `previous`.
             x: Ring::new(steps.max(2), dimension, T::zero()),
-            f: Ring::new(start.depth(|w| &w.first).max(weights.first.len()), dimension, T::zero()),
+            f: Ring::new(start.depth(|w| &w.first).max(weights.first.depth()), dimension, T::zero()),
             g: (field.parts() != Parts::One).then(|| {
-                Ring::new(start.depth(|w| &w.second).max(weights.second.len()), dimension, T::zero())
+                Ring::new(start.depth(|w| &w.second).max(weights.second.depth()), dimension, T::zero())
             }),
             next: vec![[T::zero(); BLOCK]; dimension.div_ceil(BLOCK)],
             weights,
@@ -322,9 +322,9 @@ impl<T: Scalar> Start<T> {
     }
 
     /// How far back the starting rows look, in the part that `pick` names; at least the newest evaluation is kept.
-    fn depth(&self, pick: impl Fn(&Weights<T>) -> &Vec<T>) -> usize {
+    fn depth(&self, pick: impl Fn(&Weights<T>) -> &Terms<T>) -> usize {
         match self {
-            Self::Rows(rows) => rows.iter().map(|row| pick(row).len()).max().unwrap_or(1).max(1),
+            Self::Rows(rows) => rows.iter().map(|row| pick(row).depth()).max().unwrap_or(1).max(1),
             _ => 1,
         }
     }

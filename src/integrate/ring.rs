@@ -8,6 +8,7 @@ pub(super) struct Ring<T> {
     dimension: usize,
     blocks: usize,
     capacity: usize,
+    /// Where the newest sample begins.
     newest: usize,
 }
 
@@ -38,30 +39,42 @@ impl<T: Copy> Ring<T> {
     /// The same in blocks, the last one filled up.
     #[inline]
     pub(super) fn blocks(&self, age: usize) -> &[[T; BLOCK]] {
+        &self.samples[self.place(age)..][..self.blocks]
+    }
+
+    /// Where the sample `age` steps before the newest begins.
+    #[inline(always)]
+    fn place(&self, age: usize) -> usize {
         debug_assert!(age < self.capacity);
-        let slot = self.newest + age;
-        let slot = if slot >= self.capacity { slot - self.capacity } else { slot };
-        &self.samples[slot * self.blocks..][..self.blocks]
+        let place = self.newest + age * self.blocks;
+        if place >= self.samples.len() { place - self.samples.len() } else { place }
+    }
+
+    /// The `B` blocks from the block `from` on.
+    #[inline(always)]
+    pub(super) fn part<const B: usize>(&self, age: usize, from: usize) -> &[[T; BLOCK]; B] {
+        self.samples[self.place(age) + from..].first_chunk().expect("as many blocks as the state has")
     }
 
     /// The newest sample, for writing; there has to be room for one.
     pub(super) fn newest_mut(&mut self) -> &mut [T] {
-        &mut self.samples[self.newest * self.blocks..][..self.blocks].as_flattened_mut()[..self.dimension]
+        &mut self.samples[self.newest..][..self.blocks].as_flattened_mut()[..self.dimension]
     }
 
     /// Makes room for a new sample (the oldest one goes) and lends it for writing.
     pub(super) fn push(&mut self) -> &mut [T] {
         let dimension = self.dimension;
-        &mut self.push_blocks().as_flattened_mut()[..dimension]
+        let sample = self.push_blocks().as_flattened_mut();
+        let kept = dimension.min(sample.len());
+        &mut sample[..kept]
     }
 
     /// The same in blocks; what is written beyond the dimension must be zero.
     pub(super) fn push_blocks(&mut self) -> &mut [[T; BLOCK]] {
-        if self.capacity == 0 {
-            return &mut [];
-        }
-        self.newest = if self.newest == 0 { self.capacity - 1 } else { self.newest - 1 };
-        &mut self.samples[self.newest * self.blocks..][..self.blocks]
+        let end = if self.newest == 0 { self.samples.len() } else { self.newest };
+        // Nothing is kept where no capacity was asked for.
+        self.newest = end.saturating_sub(self.blocks);
+        &mut self.samples[self.newest..end]
     }
 }
 

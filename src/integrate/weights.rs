@@ -6,13 +6,28 @@ use fearless_simd::{Level, Simd};
 
 /// A row as the stepper uses it: what multiplies the known states and evaluations, newest first.
 ///
-/// `x_{n+1} = sum_j state_j x_{n-j} + sum_j first_j f_{n-j} + sum_j second_j g_{n-j}` with `sum_j state_j = 1`, trailing zeros
-/// cut off.
+/// `x_{n+1} = sum_j state_j x_{n-j} + sum_j first_j f_{n-j} + sum_j second_j g_{n-j}` with `sum_j state_j = 1`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Weights<T> {
-    pub(super) state: Vec<T>,
-    pub(super) first: Vec<T>,
-    pub(super) second: Vec<T>,
+    /// Without the newest state, whose weight is what the others leave of one.
+    older: Terms<T>,
+    pub(super) first: Terms<T>,
+    pub(super) second: Terms<T>,
+}
+
+/// The weights that are not zero, with the ages of what they multiply.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Terms<T>(Vec<(usize, T)>);
+
+impl<T: Scalar> Terms<T> {
+    fn new(weights: impl Iterator<Item = T>) -> Self {
+        Self(weights.enumerate().filter(|(_, weight)| *weight != T::zero()).collect())
+    }
+
+    /// How many samples have to be kept.
+    pub(super) fn depth(&self) -> usize {
+        self.0.last().map_or(0, |(age, _)| age + 1)
+    }
 }
 
 impl<T: Scalar> Weights<T> {
@@ -30,18 +45,21 @@ impl<T: Scalar> Weights<T> {
 
     /// Euler's step with the feedback step of a row whose `gamma` sums to `gamma_sum`.
     pub(super) fn euler(sigma: T, gamma_sum: &Rational) -> Self {
-        Self { state: vec![T::one()], first: vec![sigma], second: vec![sigma * T::from_rational(gamma_sum)] }
+        let only = |weight| Terms(vec![(0, weight)]);
+        Self {
+            older: Terms(Vec::new()),
+            first: only(sigma),
+            second: only(sigma * T::from_rational(gamma_sum)),
+        }
     }
 
     fn scaled(alpha: &[Rational], beta: &[Rational], gamma: &[Rational], sigma: T, feedback: T) -> Self {
-        let cut = |row: &[Rational], scale: T| {
-            let mut weights: Vec<T> = row[1..].iter().map(|r| T::from_rational(r) * scale).collect();
-            while weights.last().is_some_and(|w| *w == T::zero()) {
-                weights.pop();
-            }
-            weights
+        let terms = |row: &[Rational], scale: T| {
+            Terms::new(row[1..].iter().map(|weight| T::from_rational(weight) * scale))
         };
-        Self { state: cut(alpha, -T::one()), first: cut(beta, sigma), second: cut(gamma, sigma * feedback) }
+        let mut older = terms(alpha, -T::one());
+        older.0.retain(|&(age, _)| age > 0);
+        Self { older, first: terms(beta, sigma), second: terms(gamma, sigma * feedback) }
     }
 
     /// Writes `x_{n+1}` and returns whether all of it is finite. The small terms are added first: they lose least that way.
@@ -60,7 +78,7 @@ impl<T: Scalar> Weights<T> {
     }
 }
 
-/// One combination of the history. Whole blocks are written at once, so that the compiler finds the vectors in them.
+/// One combination of the history.
 struct Combination<'a, T> {
     weights: &'a Weights<T>,
     x: &'a Ring<T>,
@@ -75,39 +93,56 @@ impl<T: Scalar> Kernel for Combination<'_, T> {
     #[inline(always)]
     fn run<S: Simd>(self, _: S) -> bool {
         let Self { weights, x, f, g, next } = self;
-        next.fill([T::zero(); BLOCK]);
-        if let Some(g) = g {
-            add(&weights.second, g, next);
+        let history = (weights, x, f, g);
+        let mut nothing = [T::zero(); BLOCK];
+        let (fours, rest) = next.as_chunks_mut::<4>();
+        for (k, next) in fours.iter_mut().enumerate() {
+            combine_blocks(history, 4 * k, next, &mut nothing);
         }
-        add(&weights.first, f, next);
-        let newest = x.blocks(0);
-        for (age, weight) in used(&weights.state).skip_while(|&(age, _)| age == 0) {
-            for ((sum, sample), newest) in next.iter_mut().zip(x.blocks(age)).zip(newest) {
-                *sum = std::array::from_fn(|i| sum[i] + weight * (sample[i] - newest[i]));
-            }
+        let from = 4 * fours.len();
+        if let Some(next) = rest.first_chunk_mut::<3>() {
+            combine_blocks(history, from, next, &mut nothing);
+        } else if let Some(next) = rest.first_chunk_mut::<2>() {
+            combine_blocks(history, from, next, &mut nothing);
+        } else if let Some(next) = rest.first_chunk_mut::<1>() {
+            combine_blocks(history, from, next, &mut nothing);
         }
-        let mut all_finite = true;
-        for (sum, newest) in next.iter_mut().zip(newest) {
-            let total: [T; BLOCK] = std::array::from_fn(|i| sum[i] + newest[i]);
-            // Every entry is looked at, whatever the others are: that is quicker than to stop early.
-            all_finite &= total.iter().fold(true, |all, entry| all & entry.is_finite());
-            *sum = total;
-        }
-        all_finite
+        nothing.iter().all(|entry| entry.is_finite())
     }
 }
 
-/// The weights that are not zero, with the ages of their samples.
+/// Combines the `B` blocks that begin at the block `from`, whose sums stay in registers; `nothing` stays finite if they are.
 #[inline(always)]
-fn used<T: Scalar>(weights: &[T]) -> impl Iterator<Item = (usize, T)> {
-    weights.iter().copied().enumerate().filter(|&(_, weight)| weight != T::zero())
+fn combine_blocks<T: Scalar, const B: usize>(
+    (weights, x, f, g): (&Weights<T>, &Ring<T>, &Ring<T>, Option<&Ring<T>>),
+    from: usize,
+    next: &mut [[T; BLOCK]; B],
+    nothing: &mut [T; BLOCK],
+) {
+    let mut sums = [[T::zero(); BLOCK]; B];
+    if let Some(g) = g {
+        add(&weights.second, g, from, &mut sums);
+    }
+    add(&weights.first, f, from, &mut sums);
+    let newest = x.part::<B>(0, from);
+    for &(age, weight) in &weights.older.0 {
+        let sample = x.part::<B>(age, from);
+        for b in 0..B {
+            sums[b] = std::array::from_fn(|i| sums[b][i] + weight * (sample[b][i] - newest[b][i]));
+        }
+    }
+    for b in 0..B {
+        next[b] = std::array::from_fn(|i| sums[b][i] + newest[b][i]);
+        *nothing = std::array::from_fn(|i| nothing[i] + (next[b][i] - next[b][i]));
+    }
 }
 
 #[inline(always)]
-fn add<T: Scalar>(weights: &[T], ring: &Ring<T>, sums: &mut [[T; BLOCK]]) {
-    for (age, weight) in used(weights) {
-        for (sum, sample) in sums.iter_mut().zip(ring.blocks(age)) {
-            *sum = std::array::from_fn(|i| sum[i] + weight * sample[i]);
+fn add<T: Scalar, const B: usize>(terms: &Terms<T>, ring: &Ring<T>, from: usize, sums: &mut [[T; BLOCK]; B]) {
+    for &(age, weight) in &terms.0 {
+        let sample = ring.part::<B>(age, from);
+        for b in 0..B {
+            sums[b] = std::array::from_fn(|i| sums[b][i] + weight * sample[b][i]);
         }
     }
 }

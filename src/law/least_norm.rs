@@ -8,7 +8,7 @@ pub(crate) struct LeastNorm<V> {
     pub(crate) smallest_pivot: V,
 }
 
-/// Gives `write` for every column the entries of `J^T (J J^T)^-1 v` and `J^T (J J^T)^-1 w`.
+/// Gives `write` for every column the entries of `J^T (J J^T)^-1 v` and `J^T (J J^T)^-1 w` of two `velocities`.
 ///
 /// `J` has columns whose entries `entry(column, row)` reads, of which `M` count; every lane holds a Jacobian of its own.
 #[inline(always)]
@@ -16,18 +16,20 @@ pub(crate) fn least_norm<V: Lanes, C, const M: usize>(
     token: V::Token,
     columns: &[C],
     entry: impl Fn(&C, usize) -> V + Copy,
-    [v, w]: [&[V; M]; 2],
+    velocities: impl FnOnce() -> [[V; M]; 2],
     mut write: impl FnMut(usize, V, V),
 ) -> LeastNorm<V> {
     let factor = LaneFactor::<V, M>::of(token, columns, entry);
-    let (y, z) = (factor.solve(v), factor.solve(w));
+    // Asked for only now: until here the registers are full.
+    let [v, w] = velocities();
+    let (y, z) = (factor.solve(&v), factor.solve(&w));
     for (place, column) in columns.iter().enumerate() {
         let first = entry(column, 0);
         let (mut forward, mut back) = (first * y[0], first * z[0]);
         for row in 1..M {
             let entry = entry(column, row);
-            forward = forward + entry * y[row];
-            back = back + entry * z[row];
+            forward = entry.times_plus(y[row], forward);
+            back = entry.times_plus(z[row], back);
         }
         write(place, forward, back);
     }

@@ -1,6 +1,7 @@
 use super::least_norm::least_norm;
 use super::{Criterion, Demand, Law, Resolution};
-use crate::math::SingularValues;
+use crate::math::{Kernel, Lane, Lanes, SingularValues, level, with_instructions};
+use fearless_simd::Simd;
 use nalgebra::Vector6;
 
 /// The default threshold, as a fraction of the length scale of the chain.
@@ -69,7 +70,8 @@ impl Pseudoinverse {
             criterion.velocity(demand.q, &mut self.c);
         }
         let homogeneous = self.criterion.is_some().then_some(&self.c[..]);
-        let (bound, is_definite) = resolve_regular::<M>(demand, homogeneous, f, g);
+        let regular = Regular::<M> { demand, homogeneous, f: &mut *f, g: &mut *g };
+        let (bound, is_definite) = with_instructions(level(), regular);
         if is_definite && bound > self.threshold {
             return Resolution { smallest_singular_value: bound, damped: false };
         }
@@ -129,31 +131,42 @@ impl Law for Pseudoinverse {
     }
 }
 
-/// `f = c + J^T (J J^T)^-1 (phi' - J c)` and `g = J^T (J J^T)^-1 (-k e)`; returns the bound of the smallest singular value
-/// and whether any of this means something.
-fn resolve_regular<const M: usize>(
-    demand: &Demand<'_>,
-    homogeneous: Option<&[f64]>,
-    f: &mut [f64],
-    g: &mut [f64],
-) -> (f64, bool) {
-    let jacobian = demand.jacobian;
-    let mut wanted = head::<M>(demand.feedforward);
-    if let Some(c) = homogeneous {
-        subtract_image(jacobian, c, &mut wanted);
+/// `f = c + J^T (J J^T)^-1 (phi' - J c)` and `g = J^T (J J^T)^-1 (-k e)`.
+struct Regular<'a, const M: usize> {
+    demand: &'a Demand<'a>,
+    homogeneous: Option<&'a [f64]>,
+    f: &'a mut [f64],
+    g: &'a mut [f64],
+}
+
+impl<const M: usize> Kernel for Regular<'_, M> {
+    /// The bound of the smallest singular value, and whether any of this means something.
+    type Output = (f64, bool);
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> (f64, bool) {
+        let Self { demand, homogeneous, f, g } = self;
+        let jacobian = demand.jacobian;
+        let mut wanted = head::<M>(demand.feedforward);
+        if let Some(c) = homogeneous {
+            subtract_image(jacobian, c, &mut wanted);
+        }
+        let lanes = |velocity: [f64; M]| velocity.map(|entry| Lane::splat(simd, entry));
+        let found = least_norm(
+            simd,
+            jacobian,
+            #[inline(always)]
+            |column, row| Lane::splat(simd, column[row]),
+            #[inline(always)]
+            || [lanes(wanted), lanes(head::<M>(demand.feedback))],
+            #[inline(always)]
+            |column, forward: Lane<S>, back: Lane<S>| {
+                f[column] = homogeneous.map_or(forward.value, |c| c[column] + forward.value);
+                g[column] = back.value;
+            },
+        );
+        (found.bound.value, found.smallest_pivot.value > 0.0)
     }
-    let velocities = [&wanted, &head::<M>(demand.feedback)];
-    let found = least_norm(
-        (),
-        jacobian,
-        |column, row| column[row],
-        velocities,
-        |column, forward, back| {
-            f[column] = homogeneous.map_or(forward, |c| c[column] + forward);
-            g[column] = back;
-        },
-    );
-    (found.bound, found.smallest_pivot > 0.0)
 }
 
 fn resolve_near_singular<const M: usize>(

@@ -1,13 +1,19 @@
 //! The normal equations of a short, wide matrix: `J J^T` and its triangular factorisation, of static size.
 
-use super::lanes::Lanes;
+use super::lanes::{Kernel, Lane, Lanes, level, with_instructions};
+use fearless_simd::Simd;
 use nalgebra::Vector6;
 
 /// The Cholesky factorisation without square roots, `G = L D L^T` (L unit lower triangular, D diagonal), of the Gram matrix `G = J J^T` of the first `M`
 /// rows of `J`.
 #[derive(Clone, Copy, Debug)]
 pub struct GramCholesky<const M: usize> {
-    factor: LaneFactor<f64, M>,
+    /// `L` below the diagonal.
+    lower: [[f64; M]; M],
+    /// `D^-1`.
+    inverse_pivots: [f64; M],
+    /// The trace of `G^-1`.
+    trace_of_inverse: f64,
 }
 
 impl<const M: usize> GramCholesky<M> {
@@ -16,22 +22,59 @@ impl<const M: usize> GramCholesky<M> {
     /// `None` when a pivot is not positive: the rows are dependent to working precision, or not finite.
     #[inline]
     pub fn new(columns: &[Vector6<f64>]) -> Option<Self> {
-        let factor = LaneFactor::of((), columns, |column, row| column[row]);
-        let is_definite = factor.smallest_pivot > 0.0 && factor.trace_of_inverse().is_finite();
-        is_definite.then_some(Self { factor })
+        with_instructions(level(), Factorise(columns))
     }
 
     /// The `y` with `J J^T y = v`.
     #[inline]
     pub fn solve(&self, v: &[f64; M]) -> [f64; M] {
-        self.factor.solve(v)
+        with_instructions(level(), Solve(self, v))
     }
 
     /// A lower bound of the smallest singular value of `J`, at most a factor `sqrt(M)` below it:
     /// `1 / sqrt(trace(G^-1))`.
     #[inline]
     pub fn smallest_singular_value_bound(&self) -> f64 {
-        self.factor.smallest_singular_value_bound()
+        1.0 / self.trace_of_inverse.sqrt()
+    }
+}
+
+/// See [`GramCholesky::new`].
+struct Factorise<'a, const M: usize>(&'a [Vector6<f64>]);
+
+impl<const M: usize> Kernel for Factorise<'_, M> {
+    type Output = Option<GramCholesky<M>>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let entry = |column: &Vector6<f64>, row: usize| Lane::splat(simd, column[row]);
+        let factor = LaneFactor::<Lane<S>, M>::of(simd, self.0, entry);
+        let trace_of_inverse = factor.trace_of_inverse().value;
+        let is_definite = factor.smallest_pivot.value > 0.0 && trace_of_inverse.is_finite();
+        is_definite.then(|| GramCholesky {
+            lower: factor.lower.map(|row| row.map(|entry| entry.value)),
+            inverse_pivots: factor.inverse_pivots.map(|pivot| pivot.value),
+            trace_of_inverse,
+        })
+    }
+}
+
+/// See [`GramCholesky::solve`].
+struct Solve<'a, const M: usize>(&'a GramCholesky<M>, &'a [f64; M]);
+
+impl<const M: usize> Kernel for Solve<'_, M> {
+    type Output = [f64; M];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> [f64; M] {
+        let real = |value| Lane::splat(simd, value);
+        let GramCholesky { lower, inverse_pivots, .. } = self.0;
+        let factor = LaneFactor {
+            lower: lower.map(|row| row.map(real)),
+            inverse_pivots: inverse_pivots.map(real),
+            smallest_pivot: real(f64::MAX),
+        };
+        factor.solve(&self.1.map(real)).map(|entry| entry.value)
     }
 }
 
@@ -126,7 +169,7 @@ fn add_products<V: Lanes, C, const M: usize, const ALIKE: bool>(
         rows!(M, I, {
             rows!(M, J, {
                 if J <= I && (I / 3 == J / 3) == ALIKE {
-                    sums[I][J] = sums[I][J] + entries[I] * entries[J];
+                    sums[I][J] = entries[I].times_plus(entries[J], sums[I][J]);
                 }
             });
         });
@@ -145,7 +188,7 @@ fn factor_row<V: Lanes, const M: usize, const I: usize>(factor: &mut LaneFactor<
             for k in 0..J {
                 // In the last entry the other factor is this row itself, scaled.
                 let other = if J == I { scaled[k] } else { factor.lower[J][k] };
-                row[J] = row[J] - row[k] * other;
+                row[J] = row[J].less_product(row[k], other);
             }
             if J < I {
                 scaled[J] = row[J] * factor.inverse_pivots[J];
@@ -160,7 +203,7 @@ fn factor_row<V: Lanes, const M: usize, const I: usize>(factor: &mut LaneFactor<
 #[inline(always)]
 fn substitute_forward<V: Lanes, const M: usize, const I: usize>(factor: &LaneFactor<V, M>, y: &mut [V; M]) {
     for j in 0..I {
-        y[I] = y[I] - factor.lower[I][j] * y[j];
+        y[I] = y[I].less_product(factor.lower[I][j], y[j]);
     }
 }
 
@@ -169,7 +212,7 @@ fn substitute_forward<V: Lanes, const M: usize, const I: usize>(factor: &LaneFac
 fn substitute_back<V: Lanes, const M: usize, const I: usize>(factor: &LaneFactor<V, M>, y: &mut [V; M]) {
     let last = M - 1 - I;
     for j in 0..last {
-        y[j] = y[j] - factor.lower[last][j] * y[last];
+        y[j] = y[j].less_product(factor.lower[last][j], y[last]);
     }
 }
 
@@ -185,13 +228,13 @@ fn invert_row<V: Lanes, const M: usize, const I: usize>(
         if J < I {
             let mut entry = factor.lower[I][J];
             for k in J + 1..I {
-                entry = entry - factor.lower[I][k] * inverse[k][J];
+                entry = entry.less_product(factor.lower[I][k], inverse[k][J]);
             }
             inverse[I][J] = entry;
-            squares = squares + entry * entry;
+            squares = entry.times_plus(entry, squares);
         }
     });
-    *trace = *trace + squares * factor.inverse_pivots[I];
+    *trace = squares.times_plus(factor.inverse_pivots[I], *trace);
 }
 
 #[cfg(test)]

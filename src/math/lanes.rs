@@ -1,19 +1,21 @@
 //! Numbers computed several at a time, one in each lane of a register.
 //!
-//! Kernels are written once, over [`Lanes`], and run on plain `f64` or on vectors of the widest instructions that the
-//! machine has. Every operation here is one IEEE operation in each lane and none is fused with another, so all widths
-//! and all instruction sets give the same bits.
+//! Kernels are written once, over [`Lanes`], and run on single reals or on vectors of the widest instructions that the
+//! machine has. Every operation here is one IEEE operation in each lane, so all widths give the same bits. A product and a
+//! sum are fused ([`Lanes::times_plus`]) by every set of instructions that can: by AVX2 and Neon, not by SSE2, which
+//! therefore differs in the last places.
 
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, f64x2, f64x4};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdCombine, SimdFloat, f64x2, f64x4};
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::LazyLock;
 
 /// One or more reals that are computed together.
 pub(crate) trait Lanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The proof that the machine has the instructions.
-    type Token: Copy;
+    type Token: Simd;
     /// The reals in memory.
     type Array: Copy + Debug + AsRef<[f64]> + AsMut<[f64]> + Send;
     /// How many there are.
@@ -35,6 +37,18 @@ pub(crate) trait Lanes:
     fn store(self, values: &mut Self::Array);
 
     fn store_slice(self, values: &mut [f64]);
+
+    /// `self factor + term`, rounded once where the instructions can.
+    fn times_plus(self, factor: Self, term: Self) -> Self;
+
+    /// `self factor - term`, rounded once where the instructions can.
+    fn times_less(self, factor: Self, term: Self) -> Self;
+
+    /// `self - a b`, rounded once where the instructions can.
+    #[inline(always)]
+    fn less_product(self, a: Self, b: Self) -> Self {
+        (-a).times_plus(b, self)
+    }
 
     fn floor(self) -> Self;
 
@@ -78,6 +92,27 @@ pub(crate) trait LaneArray: Copy + Debug + AsRef<[f64]> + AsMut<[f64]> + Send {
 
     /// Reals that lie one after the other, as whole arrays.
     fn arrays(reals: &[f64]) -> &[Self];
+
+    /// The reals of arrays, one after the other.
+    fn reals(arrays: &[Self]) -> &[f64];
+
+    /// Writes rows, each of which holds one entry of every lane, as lanes that hold all entries, one lane after the other, each
+    /// filled up with zeros to whole arrays.
+    fn write_lanes<S: Simd>(simd: S, rows: &[Self], lanes: &mut [Self]);
+}
+
+/// Writes four rows of four as columns.
+#[inline(always)]
+fn write_square<S: Simd>(simd: S, rows: &[[f64; 4]; 4], columns: [&mut [f64; 4]; 4]) {
+    let load = |i: usize| <f64x4<S> as Lanes>::load(simd, &rows[i]);
+    let (a, b, c, d) = (load(0), load(1), load(2), load(3));
+    let (low, other_low) = (a.zip_low(c), b.zip_low(d));
+    let (high, other_high) = (a.zip_high(c), b.zip_high(d));
+    let [first, second, third, fourth] = columns;
+    Lanes::store(low.zip_low(other_low), first);
+    Lanes::store(low.zip_high(other_low), second);
+    Lanes::store(high.zip_low(other_high), third);
+    Lanes::store(high.zip_high(other_high), fourth);
 }
 
 impl LaneArray for [f64; 2] {
@@ -94,6 +129,26 @@ impl LaneArray for [f64; 2] {
     #[inline(always)]
     fn arrays(reals: &[f64]) -> &[Self] {
         reals.as_chunks().0
+    }
+
+    #[inline(always)]
+    fn reals(arrays: &[Self]) -> &[f64] {
+        arrays.as_flattened()
+    }
+
+    #[inline(always)]
+    fn write_lanes<S: Simd>(simd: S, rows: &[Self], lanes: &mut [Self]) {
+        let (pairs, last) = rows.as_chunks::<2>();
+        let (first, second) = lanes.split_at_mut(lanes.len() / 2);
+        let mut out = first.iter_mut().zip(second);
+        for ([a, b], (first, second)) in pairs.iter().zip(&mut out) {
+            let (a, b) = (<f64x2<S> as Lanes>::load(simd, a), <f64x2<S> as Lanes>::load(simd, b));
+            Lanes::store(a.zip_low(b), first);
+            Lanes::store(a.zip_high(b), second);
+        }
+        if let (&[[a, b]], Some((first, second))) = (last, out.next()) {
+            (*first, *second) = ([a, 0.0], [b, 0.0]);
+        }
     }
 }
 
@@ -112,101 +167,197 @@ impl LaneArray for [f64; 4] {
     fn arrays(reals: &[f64]) -> &[Self] {
         reals.as_chunks().0
     }
+
+    #[inline(always)]
+    fn reals(arrays: &[Self]) -> &[f64] {
+        arrays.as_flattened()
+    }
+
+    #[inline(always)]
+    fn write_lanes<S: Simd>(simd: S, rows: &[Self], lanes: &mut [Self]) {
+        let (squares, rest) = rows.as_chunks::<4>();
+        let (half, other_half) = lanes.split_at_mut(lanes.len() / 2);
+        let (first, second) = half.split_at_mut(half.len() / 2);
+        let (third, fourth) = other_half.split_at_mut(other_half.len() / 2);
+        let mut out = first.iter_mut().zip(second).zip(third.iter_mut().zip(fourth));
+        for (rows, ((first, second), (third, fourth))) in squares.iter().zip(&mut out) {
+            write_square(simd, rows, [first, second, third, fourth]);
+        }
+        if let Some(((first, second), (third, fourth))) = out.next() {
+            let row = |i: usize| rest.get(i).copied().unwrap_or(Self::ZERO);
+            write_square(simd, &[row(0), row(1), row(2), row(3)], [first, second, third, fourth]);
+        }
+    }
 }
 
-impl Lanes for f64 {
-    type Token = ();
+/// A single real, computed as each lane of the instructions `S` is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lane<S> {
+    pub(crate) value: f64,
+    simd: S,
+}
+
+impl<S: Simd> Lane<S> {
+    #[inline(always)]
+    fn with(self, value: f64) -> Self {
+        Self { value, ..self }
+    }
+
+    /// Whether the instructions can fuse a product and a sum: a constant once they are known.
+    #[inline(always)]
+    fn is_fused(self) -> bool {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        return self.simd.level().as_avx2().is_some();
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        return cfg!(target_arch = "aarch64");
+    }
+}
+
+macro_rules! operators_of_lanes {
+    ($($operator:ident $method:ident),*) => {$(
+        impl<S: Simd> $operator for Lane<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.with(self.value.$method(other.value))
+            }
+        }
+    )*};
+}
+
+operators_of_lanes!(Add add, Sub sub, Mul mul, Div div);
+
+impl<S: Simd> Neg for Lane<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.with(-self.value)
+    }
+}
+
+impl<S: Simd> Lanes for Lane<S> {
+    type Token = S;
     type Array = [f64; 1];
     const WIDTH: usize = 1;
 
     #[inline(always)]
-    fn splat((): (), value: f64) -> Self {
-        value
+    fn splat(simd: S, value: f64) -> Self {
+        Self { value, simd }
     }
 
     #[inline(always)]
     fn like(self, value: f64) -> Self {
-        value
+        self.with(value)
     }
 
     #[inline(always)]
-    fn load((): (), values: &[f64; 1]) -> Self {
-        values[0]
+    fn load(simd: S, values: &[f64; 1]) -> Self {
+        Self { value: values[0], simd }
     }
 
     #[inline(always)]
-    fn load_slice((): (), values: &[f64]) -> Self {
-        values[0]
+    fn load_slice(simd: S, values: &[f64]) -> Self {
+        Self { value: values[0], simd }
     }
 
     #[inline(always)]
-    fn gather((): (), mut value: impl FnMut(usize) -> f64) -> Self {
-        value(0)
+    fn gather(simd: S, mut value: impl FnMut(usize) -> f64) -> Self {
+        Self { value: value(0), simd }
     }
 
     #[inline(always)]
     fn store(self, values: &mut [f64; 1]) {
-        values[0] = self;
+        values[0] = self.value;
     }
 
     #[inline(always)]
     fn store_slice(self, values: &mut [f64]) {
-        values[0] = self;
+        values[0] = self.value;
+    }
+
+    #[inline(always)]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        self.with(if self.is_fused() {
+            self.value.mul_add(factor.value, term.value)
+        } else {
+            self.value * factor.value + term.value
+        })
+    }
+
+    #[inline(always)]
+    fn times_less(self, factor: Self, term: Self) -> Self {
+        self.times_plus(factor, -term)
     }
 
     #[inline(always)]
     fn floor(self) -> Self {
-        f64::floor(self)
+        self.with(self.value.floor())
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        f64::sqrt(self)
+        self.with(self.value.sqrt())
     }
 
     #[inline(always)]
     fn least(self, other: Self) -> Self {
-        if self < other { self } else { other }
+        if self.value < other.value { self } else { other }
     }
 
     #[inline(always)]
     fn greatest(self, other: Self) -> Self {
-        if self > other { self } else { other }
+        if self.value > other.value { self } else { other }
     }
 
     #[inline(always)]
     fn abs(self) -> Self {
-        f64::abs(self)
+        self.with(self.value.abs())
     }
 
     #[inline(always)]
     fn where_less(a: Self, b: Self, then: Self, other: Self) -> Self {
-        if a < b { then } else { other }
+        if a.value < b.value { then } else { other }
     }
 
     #[inline(always)]
     fn all_at_least(self, other: Self) -> bool {
-        self >= other
+        self.value >= other.value
     }
 
     #[inline(always)]
     fn pick(flag: Self, zero: Self, other: Self) -> Self {
-        if flag == 0.0 { zero } else { other }
+        if flag.value == 0.0 { zero } else { other }
     }
 
     #[inline(always)]
     fn to_array(self) -> [f64; 1] {
-        [self]
+        [self.value]
     }
 
     #[inline(always)]
     fn all_within(self, bound: f64) -> bool {
-        self.abs() < bound
+        self.value.abs() < bound
     }
 }
 
+/// Two reals from where they lie: an array of them would be written to memory first.
+#[inline(always)]
+fn gather_two<S: Simd>(simd: S, mut value: impl FnMut(usize) -> f64) -> f64x2<S> {
+    let [low, high] = [value(0), value(1)].map(|value| <f64x2<S> as SimdBase<S>>::splat(simd, value));
+    low.zip_low(high)
+}
+
+/// Four reals from where they lie.
+#[inline(always)]
+fn gather_four<S: Simd>(simd: S, mut value: impl FnMut(usize) -> f64) -> f64x4<S> {
+    let low = gather_two(simd, &mut value);
+    low.combine(gather_two(simd, |lane| value(lane + 2)))
+}
+
 macro_rules! vector_lanes {
-    ($vector:ident, $width:literal) => {
+    ($vector:ident, $width:literal, $gather:ident) => {
         impl<S: Simd> Lanes for $vector<S> {
             type Token = S;
             type Array = [f64; $width];
@@ -234,7 +385,7 @@ macro_rules! vector_lanes {
 
             #[inline(always)]
             fn gather(token: S, value: impl FnMut(usize) -> f64) -> Self {
-                <Self as SimdBase<S>>::from_fn(token, value)
+                $gather(token, value)
             }
 
             #[inline(always)]
@@ -245,6 +396,16 @@ macro_rules! vector_lanes {
             #[inline(always)]
             fn store_slice(self, values: &mut [f64]) {
                 <Self as SimdBase<S>>::store_slice(&self, values);
+            }
+
+            #[inline(always)]
+            fn times_plus(self, factor: Self, term: Self) -> Self {
+                self.mul_add(factor, term)
+            }
+
+            #[inline(always)]
+            fn times_less(self, factor: Self, term: Self) -> Self {
+                self.mul_sub(factor, term)
             }
 
             #[inline(always)]
@@ -302,8 +463,14 @@ macro_rules! vector_lanes {
     };
 }
 
-vector_lanes!(f64x2, 2);
-vector_lanes!(f64x4, 4);
+vector_lanes!(f64x2, 2, gather_two);
+vector_lanes!(f64x4, 4, gather_four);
+
+/// The instructions of this machine.
+pub(crate) fn level() -> Level {
+    static LEVEL: LazyLock<Level> = LazyLock::new(Level::new);
+    *LEVEL
+}
 
 /// A computation that is compiled for each set of instructions.
 pub(crate) trait Kernel {

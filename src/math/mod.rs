@@ -49,7 +49,7 @@ pub(crate) use complex_roots::{Complex, polish, starting_points};
 pub(crate) use figure::figure;
 pub(crate) use gram::LaneFactor;
 pub(crate) use interpolation::interpolate;
-pub(crate) use lanes::{Kernel, LaneArray, Lanes, with_instructions};
+pub(crate) use lanes::{Kernel, Lane, LaneArray, Lanes, level, with_instructions};
 pub(crate) use random::{mix, normal, unit};
 pub(crate) use rational::{common_denominator, shortened};
 pub(crate) use real::Real;

@@ -1,33 +1,53 @@
 //! Sines and cosines of many angles together.
 
-use super::lanes::Lanes;
+use super::lanes::{Lane, Lanes};
+use fearless_simd::Simd;
+use std::hint::black_box;
 
 /// Beyond this angle \[rad\] the reduction by three parts of pi/2 would lose digits; few joints turn so far.
 const FARTHEST: f64 = 1e6;
 
-/// pi/2 in three parts: the first two have 33 bits, so that their products with whole numbers below 2^20 are exact
-/// (the splitting of fdlibm, Sun Microsystems 1993).
-const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
+/// A constant as the vectors that it is combined with.
+type Constant = [f64; 4];
 
-/// Minimax coefficients of `(sin r - r) / r^3` in `r^2` for `|r| <= pi/4` (fdlibm).
-const SINE: [f64; 6] = [
-    -1.666_666_666_666_663_2e-1,
-    8.333_333_333_322_49e-3,
-    -1.984_126_982_985_795e-4,
-    2.755_731_370_707_006_8e-6,
-    -2.505_076_025_340_686_3e-8,
-    1.589_690_995_211_55e-10,
-];
+/// What the two functions are computed with.
+struct Constants {
+    half: Constant,
+    one: Constant,
+    two: Constant,
+    two_over_pi: Constant,
+    /// pi/2 in three parts: the first two have 33 bits, so that their products with whole numbers below 2^20 are exact
+    /// (the splitting of fdlibm, Sun Microsystems 1993).
+    half_pi: [Constant; 3],
+    /// Minimax coefficients of `(sin r - r) / r^3` in `r^2` for `|r| <= pi/4` (fdlibm).
+    sine: [Constant; 6],
+    /// Minimax coefficients of `(cos r - 1 + r^2/2) / r^4` in `r^2` for `|r| <= pi/4` (fdlibm).
+    cosine: [Constant; 6],
+}
 
-/// Minimax coefficients of `(cos r - 1 + r^2/2) / r^4` in `r^2` for `|r| <= pi/4` (fdlibm).
-const COSINE: [f64; 6] = [
-    4.166_666_666_666_66e-2,
-    -1.388_888_888_887_411e-3,
-    2.480_158_728_947_673e-5,
-    -2.755_731_435_139_066_3e-7,
-    2.087_572_321_298_175e-9,
-    -1.135_964_755_778_819_5e-11,
-];
+static CONSTANTS: Constants = Constants {
+    half: [0.5; 4],
+    one: [1.0; 4],
+    two: [2.0; 4],
+    two_over_pi: [std::f64::consts::FRAC_2_PI; 4],
+    half_pi: [[1.570_796_326_734_125_6; 4], [6.077_100_506_303_966e-11; 4], [2.022_266_248_795_950_6e-21; 4]],
+    sine: [
+        [-1.666_666_666_666_663_2e-1; 4],
+        [8.333_333_333_322_49e-3; 4],
+        [-1.984_126_982_985_795e-4; 4],
+        [2.755_731_370_707_006_8e-6; 4],
+        [-2.505_076_025_340_686_3e-8; 4],
+        [1.589_690_995_211_55e-10; 4],
+    ],
+    cosine: [
+        [4.166_666_666_666_66e-2; 4],
+        [-1.388_888_888_887_411e-3; 4],
+        [2.480_158_728_947_673e-5; 4],
+        [-2.755_731_435_139_066_3e-7; 4],
+        [2.087_572_321_298_175e-9; 4],
+        [-1.135_964_755_778_819_5e-11; 4],
+    ],
+};
 
 /// Writes the sines and cosines of the angles \[rad\] that `angle` gives by index, `V::WIDTH` at a time; what does not fill
 /// the last vector is left alone.
@@ -38,6 +58,7 @@ pub(crate) fn sines_and_cosines<V: Lanes>(
     sines: &mut [f64],
     cosines: &mut [f64],
 ) {
+    let constants = black_box(&CONSTANTS);
     let out = sines.chunks_exact_mut(V::WIDTH).zip(cosines.chunks_exact_mut(V::WIDTH));
     for (chunk, (sines, cosines)) in out.enumerate() {
         let x = V::gather(
@@ -45,7 +66,7 @@ pub(crate) fn sines_and_cosines<V: Lanes>(
             #[inline(always)]
             |lane| angle(chunk * V::WIDTH + lane),
         );
-        write(x, sines, cosines);
+        write(x, (token, constants), sines, cosines);
     }
 }
 
@@ -57,62 +78,76 @@ pub(crate) fn sines_and_cosines_of<V: Lanes>(
     sines: &mut [f64],
     cosines: &mut [f64],
 ) {
+    // Constants that the compiler knows would be spread into registers one by one before every use; those that it has to
+    // read are operands where they lie.
+    let constants = black_box(&CONSTANTS);
     let out = sines.chunks_exact_mut(V::WIDTH).zip(cosines.chunks_exact_mut(V::WIDTH));
     for (angles, (sines, cosines)) in angles.chunks_exact(V::WIDTH).zip(out) {
-        write(V::load_slice(token, angles), sines, cosines);
+        write(V::load_slice(token, angles), (token, constants), sines, cosines);
     }
 }
 
 #[inline(always)]
-fn write<V: Lanes>(x: V, sines: &mut [f64], cosines: &mut [f64]) {
+fn write<V: Lanes>(x: V, with: (V::Token, &Constants), sines: &mut [f64], cosines: &mut [f64]) {
     if x.all_within(FARTHEST) {
-        let (sine, cosine) = sin_cos(x);
+        let (sine, cosine) = sin_cos(x, with);
         sine.store_slice(sines);
         cosine.store_slice(cosines);
     } else {
-        one_by_one(x.to_array().as_ref(), sines, cosines);
+        one_by_one(with, x.to_array().as_ref(), sines, cosines);
     }
 }
 
 /// Angles too large for [`sin_cos`], and those that are not finite.
 #[cold]
-fn one_by_one(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
+fn one_by_one<S: Simd>(
+    (simd, constants): (S, &Constants),
+    angles: &[f64],
+    sines: &mut [f64],
+    cosines: &mut [f64],
+) {
     for ((&angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
-        (*sine, *cosine) = if angle.abs() < FARTHEST { sin_cos(angle) } else { angle.sin_cos() };
+        (*sine, *cosine) = if angle.abs() < FARTHEST {
+            let (sine, cosine) = sin_cos(Lane::splat(simd, angle), (simd, constants));
+            (sine.value, cosine.value)
+        } else {
+            angle.sin_cos()
+        };
     }
 }
 
 /// The sine and the cosine, each to two units in the last place of one: `|x| < 1e6`.
 #[inline(always)]
-fn sin_cos<V: Lanes>(x: V) -> (V, V) {
-    let turns = (x * x.like(std::f64::consts::FRAC_2_PI) + x.like(0.5)).floor();
-    let [high, middle, low] = HALF_PI.map(|part| turns * x.like(part));
-    let r = x - high - middle - low;
-    let square = r * r;
-    let sine = r + square * r * polynomial(square, &SINE);
-    let half = square * x.like(0.5);
-    let near_one = x.like(1.0) - half;
-    let lost = (x.like(1.0) - near_one) - half;
-    let cosine = near_one + (lost + square * square * polynomial(square, &COSINE));
-    into_quadrant(turns, sine, cosine)
-}
-
-#[inline(always)]
-fn polynomial<V: Lanes>(x: V, coefficients: &[f64; 6]) -> V {
-    let mut value = x.like(coefficients[5]);
-    for &coefficient in coefficients[..5].iter().rev() {
-        value = value * x + x.like(coefficient);
+fn sin_cos<V: Lanes>(x: V, (token, constants): (V::Token, &Constants)) -> (V, V) {
+    let constant = |constant: &Constant| V::load_slice(token, &constant[..V::WIDTH]);
+    let (half, one) = (constant(&constants.half), constant(&constants.one));
+    let turns = x.times_plus(constant(&constants.two_over_pi), half).floor();
+    let mut r = x;
+    for part in &constants.half_pi {
+        r = r.less_product(turns, constant(part));
     }
-    value
+    let square = r * r;
+    let polynomial = |coefficients: &[Constant; 6]| {
+        let mut value = constant(&coefficients[5]);
+        for coefficient in coefficients[..5].iter().rev() {
+            value = value.times_plus(square, constant(coefficient));
+        }
+        value
+    };
+    let sine = (square * r).times_plus(polynomial(&constants.sine), r);
+    let halved = square * half;
+    let near_one = one - halved;
+    let lost = (one - near_one) - halved;
+    let cosine = near_one + (square * square).times_plus(polynomial(&constants.cosine), lost);
+    into_quadrant(turns, (sine, cosine), (half, one, constant(&constants.two)))
 }
 
 /// Turns the pair by `turns` quarter turns: an odd number swaps it, and the signs follow.
 #[inline(always)]
-fn into_quadrant<V: Lanes>(turns: V, sine: V, cosine: V) -> (V, V) {
-    let (one, two, half) = (turns.like(1.0), turns.like(2.0), turns.like(0.5));
+fn into_quadrant<V: Lanes>(turns: V, (sine, cosine): (V, V), (half, one, two): (V, V, V)) -> (V, V) {
     let pairs = (turns * half).floor();
-    let odd = turns - two * pairs;
-    let sign = one - two * (pairs - two * (pairs * half).floor());
+    let odd = turns.less_product(two, pairs);
+    let sign = one.less_product(two, pairs.less_product(two, (pairs * half).floor()));
     (V::pick(odd, sine, cosine) * sign, V::pick(odd, cosine, -sine) * sign)
 }
 
@@ -138,28 +173,28 @@ mod tests {
             let (sines, cosines) = two.split_at_mut(4);
             sines_and_cosines::<f64x2<S>>(simd, |i| self.0[i], sines, cosines);
             let (sines, cosines) = one.split_at_mut(4);
-            sines_and_cosines::<f64>((), |i| self.0[i], sines, cosines);
+            sines_and_cosines::<Lane<S>>(simd, |i| self.0[i], sines, cosines);
             all
         }
     }
 
     fn check(angles: [f64; 4]) {
-        let wide = with_instructions(Level::new(), AllWidths(&angles));
-        let base = with_instructions(Level::baseline(), AllWidths(&angles));
-        assert_eq!(format!("{wide:?}"), format!("{base:?}"), "{angles:?}");
-        for row in &wide[1..] {
-            assert_eq!(format!("{row:?}"), format!("{:?}", wide[0]), "{angles:?}");
-        }
-        for (i, angle) in angles.into_iter().enumerate().filter(|(_, angle)| angle.is_finite()) {
-            let (sine, cosine) = angle.sin_cos();
-            assert!((wide[0][i] - sine).abs() <= 2.5e-16, "sin {angle}");
-            assert!((wide[0][i + 4] - cosine).abs() <= 2.5e-16, "cos {angle}");
+        for level in [Level::new(), Level::baseline()] {
+            let found = with_instructions(level, AllWidths(&angles));
+            for row in &found[1..] {
+                assert_eq!(format!("{row:?}"), format!("{:?}", found[0]), "{angles:?}");
+            }
+            for (i, angle) in angles.into_iter().enumerate().filter(|(_, angle)| angle.is_finite()) {
+                let (sine, cosine) = angle.sin_cos();
+                assert!((found[0][i] - sine).abs() <= 2.5e-16, "sin {angle}");
+                assert!((found[0][i + 4] - cosine).abs() <= 2.5e-16, "cos {angle}");
+            }
         }
     }
 
     proptest! {
         #[test]
-        fn all_widths_and_instructions_agree_and_are_right(
+        fn all_widths_agree_and_are_right(
             angles in proptest::array::uniform4(-10.0..10.0_f64), exponent in -9.0..7.0_f64,
         ) {
             check(angles);
@@ -169,15 +204,19 @@ mod tests {
         #[test]
         fn small_results_keep_their_relative_accuracy(turns in -1000..1000_i32) {
             let angle = f64::from(turns) * std::f64::consts::FRAC_PI_2;
-            let ((sine, cosine), exact) = (sin_cos(angle), angle.sin_cos());
-            prop_assert!((sine - exact.0).abs() <= 4e-16 * exact.0.abs());
-            prop_assert!((cosine - exact.1).abs() <= 4e-16 * exact.1.abs());
+            let exact = angle.sin_cos();
+            for level in [Level::new(), Level::baseline()] {
+                let found = with_instructions(level, AllWidths(&[angle; 4]))[0];
+                prop_assert!((found[0] - exact.0).abs() <= 4e-16 * exact.0.abs());
+                prop_assert!((found[4] - exact.1).abs() <= 4e-16 * exact.1.abs());
+            }
         }
     }
 
     #[test]
     fn what_is_not_finite_gives_nan_and_harms_no_neighbour() {
         check([f64::NAN, 1.0, f64::INFINITY, 1e300]);
-        assert_eq!(sin_cos(0.0), (0.0, 1.0));
+        let found = with_instructions(Level::new(), AllWidths(&[0.0; 4]))[0];
+        assert_eq!((found[0], found[4]), (0.0, 1.0));
     }
 }

@@ -117,7 +117,9 @@ impl Batch {
     pub fn arm(&self, plan: usize, i: usize) -> ArmState<'_> {
         let (fleet, course) = self.places[plan];
         let fleet = &self.fleets[fleet];
-        ArmState::of(&fleet.field.arms[fleet.courses[course].arms.clone()][i])
+        let arms = fleet.courses[course].arms.clone();
+        assert!(i < arms.len(), "plan {plan} has {} arms", arms.len());
+        fleet.field.arm(arms.start + i)
     }
 
     /// Runs all plans to their ends and returns the trajectories, in the order of the plans.

@@ -1,8 +1,9 @@
-use super::Arm;
 use super::bundle::{Bundle, Sample, Together, are_alike};
 use super::runtime::ArmRuntime;
 use super::shared::{self, SharedArms};
+use super::{Arm, ArmState};
 use crate::integrate::{Field, Parts};
+use crate::math::level;
 use fearless_simd::Level;
 
 /// What a component of the state is: an arm and a joint of it.
@@ -22,6 +23,10 @@ pub(super) struct SynchronousField {
     pub(super) shared: Vec<SharedArms>,
     /// What the components of the state are; some only fill up a group.
     owners: Vec<Option<Owner>>,
+    /// The groups and lanes of the arms that have one.
+    lanes: Vec<Option<(usize, usize)>>,
+    /// Whether all arms were clearly on their paths and far from singularities when they were evaluated last.
+    is_on_course: bool,
     level: Level,
 }
 
@@ -75,7 +80,16 @@ impl SynchronousField {
     }
 
     fn without_groups(arms: Vec<ArmRuntime>, gain: f64) -> Self {
-        Self { arms, gain, groups: Vec::new(), shared: Vec::new(), owners: Vec::new(), level: Level::new() }
+        Self {
+            gain,
+            groups: Vec::new(),
+            shared: Vec::new(),
+            owners: Vec::new(),
+            lanes: vec![None; arms.len()],
+            is_on_course: false,
+            level: level(),
+            arms,
+        }
     }
 
     fn add_shared(&mut self, arms: &[usize]) {
@@ -120,6 +134,11 @@ impl SynchronousField {
             self.owners.extend((0..width).map(|lane| Some((members[lane.min(members.len() - 1)], joint))));
         }
         self.owners.resize(self.owners.len().next_multiple_of(ALIGNMENT), None);
+        if let Members::SideBySide(_) = arms {
+            for (lane, &member) in members.iter().enumerate() {
+                self.lanes[member] = Some((self.groups.len(), lane));
+            }
+        }
         self.groups.push(Group { from, arms });
     }
 
@@ -149,16 +168,21 @@ impl SynchronousField {
         }
     }
 
-    /// Whether all arms are clearly on their paths and far from singularities.
+    /// Whether all arms were clearly on their paths and far from singularities when they were evaluated last.
     pub(super) fn is_on_course(&self) -> bool {
-        let is_on_course = |group: &Group| match &group.arms {
-            Members::Alone(_) => false,
-            Members::SideBySide(together) => together.is_on_course(),
-        };
-        self.shared.is_empty() && self.groups.iter().all(is_on_course)
+        self.is_on_course
     }
 
-    /// Takes down errors, limits and conditioning of a sample in which all arms are on course.
+    /// An arm at the sample that was watched or told last.
+    pub(super) fn arm(&self, arm: usize) -> ArmState<'_> {
+        let lane = self.lanes[arm].map(|(group, lane)| (&self.groups[group].arms, lane));
+        match lane {
+            Some((Members::SideBySide(together), lane)) => together.arm(lane),
+            _ => ArmState::of(&self.arms[arm]),
+        }
+    }
+
+    /// Takes down states, errors, limits and conditioning of a sample in which all arms are on course.
     pub(super) fn watch(&mut self, t: f64, sample: &Sample<'_>) {
         for group in &mut self.groups {
             if let Members::SideBySide(together) = &mut group.arms {
@@ -169,7 +193,11 @@ impl SynchronousField {
 
     /// Tells every arm what is known of it at a sample.
     pub(super) fn tell(&mut self, sample: &Sample<'_>) {
-        self.each_together(|together, arms, from| together.tell(arms, &sample.from(from)));
+        for group in &mut self.groups {
+            if let Members::SideBySide(together) = &mut group.arms {
+                together.tell(self.level, &mut self.arms, &sample.from(group.from));
+            }
+        }
     }
 
     /// Tells the monitors where the arms were one sample ago.
@@ -223,13 +251,20 @@ impl Field<f64> for SynchronousField {
 
     fn evaluate(&mut self, t: f64, x: &[f64], f: &mut [f64], g: &mut [f64]) {
         let at = (t, self.gain);
+        let mut is_on_course = self.shared.is_empty();
         for Group { from, arms } in &mut self.groups {
             let (x, f, g) = (&x[*from..], &mut f[*from..], &mut g[*from..]);
             match arms {
-                Members::Alone(arm) => evaluate_alone(&mut self.arms[*arm], at, x, [f, g]),
-                Members::SideBySide(together) => together.evaluate(self.level, at, &mut self.arms, x, [f, g]),
+                Members::Alone(arm) => {
+                    evaluate_alone(&mut self.arms[*arm], at, x, [f, g]);
+                    is_on_course = false;
+                }
+                Members::SideBySide(together) => {
+                    is_on_course &= together.evaluate(self.level, at, &mut self.arms, x, [f, g]);
+                }
             }
         }
+        self.is_on_course = is_on_course;
         for shared in &mut self.shared {
             shared.evaluate(&mut self.arms, at, x, [&mut *f, &mut *g]);
         }

@@ -41,6 +41,8 @@ pub(super) struct Fleet {
     noisy: Option<NoisyLoop>,
     /// Whether an arm has met a singularity that it has not recovered from.
     remembers: bool,
+    /// The index of the sample at which the first of those that are still under way is finished.
+    first_end: usize,
 }
 
 /// What a stepper knows of the present sample.
@@ -58,7 +60,7 @@ impl Fleet {
     ) -> Self {
         let noisy = noise.map(|noise| NoisyLoop::new(noise, stepper.state().to_vec()));
         let course = Course { description, arms: 0..field.arms.len(), stop: None, left_at: None };
-        let mut fleet = Self { stepper, field, courses: vec![course], noisy, remembers: false };
+        let mut fleet = Self { stepper, field, courses: vec![course], noisy, remembers: false, first_end: 0 };
         fleet.field.remind(&sample(&fleet.stepper));
         for arm in &mut fleet.field.arms {
             arm.watch(0.0);
@@ -104,7 +106,7 @@ impl Fleet {
         let mut field = SynchronousField::of_moving(arms, moving, gain);
         let stepper = gathered(&steppers, &field, &components)?;
         evaluate_again(&stepper, &mut field);
-        Some(Self { stepper, field, courses, noisy: None, remembers })
+        Some(Self { stepper, field, courses, noisy: None, remembers, first_end: 0 })
     }
 
     /// The index of the present sample of a plan.
@@ -129,7 +131,6 @@ impl Fleet {
 
     /// Goes to the next sample and tells every arm what is known of it there; plans that are [finished](Self::is_finished) stay where they are.
     pub(super) fn step(&mut self) {
-        self.part();
         if self.advance() {
             match &mut self.noisy {
                 None => self.stepper.evaluate(&mut self.field),
@@ -141,6 +142,12 @@ impl Fleet {
 
     /// Lets plans that are finished leave, while others go on.
     fn part(&mut self) {
+        self.let_leave();
+        let under_way = (0..self.courses.len()).filter(|&course| !self.is_finished(course));
+        self.first_end = under_way.map(|course| self.courses[course].description.steps).min().unwrap_or(0);
+    }
+
+    fn let_leave(&mut self) {
         let leaves = |fleet: &Self, course: usize| {
             fleet.courses[course].left_at.is_none() && fleet.is_finished(course)
         };
@@ -152,6 +159,7 @@ impl Fleet {
             return;
         }
         self.field.hand_over();
+        self.field.tell(&sample(&self.stepper));
         let index = self.stepper.index();
         for course in everyone {
             if leaves(self, course) {
@@ -175,14 +183,18 @@ impl Fleet {
 
     /// Moves on to the next sample, which is to be evaluated then; false when there is none.
     fn advance(&mut self) -> bool {
-        while !self.are_all_finished() {
+        loop {
+            if self.stepper.index() >= self.first_end {
+                self.part();
+                if self.are_all_finished() {
+                    return false;
+                }
+            }
             if self.stepper.advance(&mut self.field) == Status::Running {
                 return true;
             }
             self.stop_what_is_not_finite();
-            self.part();
         }
-        false
     }
 
     /// Stops the plans whose step was not finite; they stay at their last good sample.
@@ -202,16 +214,17 @@ impl Fleet {
                 course.stop = Some(Stop { status: PlanStatus::NonFinite, reason });
             }
         }
+        self.first_end = 0;
     }
 
     /// Checks and observes a sample that was evaluated.
     fn look_around(&mut self) {
         let (t, sample) = (self.stepper.time(), sample(&self.stepper));
-        self.field.tell(&sample);
         if !self.remembers && self.field.is_on_course() {
             self.field.watch(t, &sample);
             return;
         }
+        self.field.tell(&sample);
         self.field.remind(&sample);
         self.remembers = false;
         for course in
@@ -219,7 +232,9 @@ impl Fleet {
         {
             let arms = &mut self.field.arms[course.arms.clone()];
             course.stop = check_lost(arms, course.description.is_stable, t);
-            if course.stop.is_none() {
+            if course.stop.is_some() {
+                self.first_end = 0;
+            } else {
                 for arm in arms {
                     arm.watch(t);
                     self.remembers |= arm.was_singular;
@@ -243,10 +258,11 @@ impl Fleet {
 
     /// Records the present sample of a plan, as it was told to the arms.
     fn write_down(&self, course: usize, record: &mut [ArmPlan]) {
-        for (arm, plan) in self.field.arms[self.courses[course].arms.clone()].iter().zip(record) {
-            plan.positions.extend_from_slice(&arm.positions);
-            plan.velocities.extend_from_slice(&arm.velocities);
-            plan.errors.push(arm.error);
+        for (arm, plan) in self.courses[course].arms.clone().zip(record) {
+            let state = self.field.arm(arm);
+            plan.positions.extend_from_slice(state.positions);
+            plan.velocities.extend_from_slice(state.velocities);
+            plan.errors.push(state.error);
         }
     }
 

@@ -1,5 +1,6 @@
 //! The limits and figures of arms side by side, in the form in which most samples are done with at a glance.
 
+use super::board::Board;
 use super::bundle::Sample;
 use super::lost::{Bounds, NEAR};
 use super::monitor::Monitor;
@@ -142,6 +143,7 @@ impl<A: LaneArray> Glance<A> {
 /// A look at a sample in which all arms are on their paths.
 pub(super) struct Look<'a, A> {
     pub(super) glance: &'a mut Glance<A>,
+    pub(super) board: &'a mut Board<A>,
     pub(super) found: &'a Found<A>,
     pub(super) t: f64,
     pub(super) sample: &'a Sample<'a>,
@@ -154,6 +156,7 @@ impl<A: LaneArray> Kernel for Look<'_, A> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
         let load = |array: &A| <A::Vector<S> as Lanes>::load(simd, array);
+        self.board.write(simd, self.sample, self.found);
         note_extremes(simd, &mut self.glance.extremes, self.found, self.t);
         let zero = load(&A::ZERO);
         let mut excess = zero;

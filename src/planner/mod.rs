@@ -2,6 +2,7 @@
 
 mod arm;
 mod batch;
+mod board;
 mod builder;
 mod bundle;
 mod diagnosis;

@@ -23,7 +23,7 @@ pub struct ArmState<'a> {
     /// Feedforward joint velocities [rad/s or m/s].
     pub velocities: &'a [f64],
     /// Task error (linear \[m\]; angular \[rad\]).
-    pub error: &'a Vector6<f64>,
+    pub error: Vector6<f64>,
     /// Whether the law damped its answer here.
     pub damped: bool,
 }
@@ -33,7 +33,7 @@ impl<'a> ArmState<'a> {
         Self {
             positions: &arm.positions,
             velocities: &arm.velocities,
-            error: &arm.error,
+            error: arm.error,
             damped: arm.resolution.damped,
         }
     }
@@ -139,7 +139,7 @@ impl Planner {
     /// # Panics
     /// If there is no arm `i`.
     pub fn arm(&self, i: usize) -> ArmState<'_> {
-        ArmState::of(&self.fleet.field.arms[i])
+        self.fleet.field.arm(i)
     }
 
     /// Where the tip of arm `i` (in the order in which arms were added) shall be at the time `t` \[s\].

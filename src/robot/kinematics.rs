@@ -5,7 +5,7 @@ use nalgebra::{IsometryMatrix3, Vector3, Vector6};
 
 use super::Chain;
 use super::segment::{Folded, Frame, Motion, Single, Twist};
-use crate::math::{Kernel, Lanes, sines_and_cosines, sines_and_cosines_of, with_instructions};
+use crate::math::{Kernel, Lane, Lanes, level, sines_and_cosines, sines_and_cosines_of, with_instructions};
 
 /// The origin of a moving axis's frame, then the axis's direction, both in the base's axes: where the column of the Jacobian
 /// will stand, which has the direction at the same place.
@@ -60,8 +60,8 @@ impl<V: Lanes> Frame<V> {
     fn turn_about_z(&mut self, sine: V, cosine: V) {
         let (x, y) = (self.x, self.y);
         for i in 0..3 {
-            self.x[i] = x[i] * cosine + y[i] * sine;
-            self.y[i] = y[i] * cosine - x[i] * sine;
+            self.x[i] = x[i].times_plus(cosine, y[i] * sine);
+            self.y[i] = y[i].times_less(cosine, x[i] * sine);
         }
     }
 
@@ -76,8 +76,8 @@ impl<V: Lanes> Frame<V> {
             Twist::Any([sine, cosine]) => {
                 let (sine, cosine) = (V::load(token, sine), V::load(token, cosine));
                 for i in 0..3 {
-                    self.y[i] = y[i] * cosine + z[i] * sine;
-                    self.z[i] = z[i] * cosine - y[i] * sine;
+                    self.y[i] = y[i].times_plus(cosine, z[i] * sine);
+                    self.z[i] = z[i].times_less(cosine, y[i] * sine);
                 }
             }
         }
@@ -87,7 +87,7 @@ impl<V: Lanes> Frame<V> {
     #[inline(always)]
     fn shift(&mut self, axis: [V; 3], by: V) {
         for i in 0..3 {
-            self.p[i] = self.p[i] + axis[i] * by;
+            self.p[i] = axis[i].times_plus(by, self.p[i]);
         }
     }
 }
@@ -133,30 +133,29 @@ pub(super) fn forward<'a, V: Lanes>(
     frame
 }
 
-/// Returns the twist of the tip at `p` that an axis gives per unit of its motion: `(z x (p - o); z)` for a turning one,
+/// Puts in the place of an axis the twist of the tip at `p` per unit of its motion: `(z x (p - o); z)` for a turning one,
 /// `(z; 0)` for a sliding one.
 #[inline(always)]
-pub(super) fn twist_of<V: Lanes>(
-    token: V::Token,
-    axis: &Axis<V::Array>,
-    motion: Motion,
-    p: &[V; 3],
-) -> [V; 6] {
+pub(super) fn into_twist<V: Lanes>(token: V::Token, axis: &mut Axis<V::Array>, motion: Motion, p: &[V; 3]) {
     let load = |i: usize| V::load(token, &axis[i]);
     let z = [load(3), load(4), load(5)];
     if motion == Motion::Shift {
-        let zero = V::splat(token, 0.0);
-        return [z[0], z[1], z[2], zero, zero, zero];
+        for i in 0..3 {
+            z[i].store(&mut axis[i]);
+            V::splat(token, 0.0).store(&mut axis[3 + i]);
+        }
+        return;
     }
     let d = [p[0] - load(0), p[1] - load(1), p[2] - load(2)];
-    let v = [z[1] * d[2] - z[2] * d[1], z[2] * d[0] - z[0] * d[2], z[0] * d[1] - z[1] * d[0]];
-    [v[0], v[1], v[2], z[0], z[1], z[2]]
+    z[1].times_less(d[2], z[2] * d[1]).store(&mut axis[0]);
+    z[2].times_less(d[0], z[0] * d[2]).store(&mut axis[1]);
+    z[0].times_less(d[1], z[1] * d[0]).store(&mut axis[2]);
 }
 
 impl ChainScratch {
     pub(super) fn with_length(length: usize) -> ChainScratch {
         ChainScratch {
-            level: Level::new(),
+            level: level(),
             motions: Motions::with_length(length),
             axes: vec![[[0.0]; 6]; length],
             tip: Frame::IDENTITY,
@@ -181,7 +180,31 @@ impl Kernel for Pass<'_> {
         // The vectors of four may reach beyond the last segment.
         let position = |k: usize| places.get(k).map_or(0.0, |place| place.multiplier * self.q[place.column]);
         self.motions.turn(simd, position);
-        forward::<f64>((), &self.chain.folded, self.motions, position, self.axes)
+        let real = |k: usize| Lane::splat(simd, position(k));
+        forward::<Lane<S>>(simd, &self.chain.folded, self.motions, real, self.axes).map(|entry| entry.value)
+    }
+}
+
+/// The Jacobian of a chain that was posed.
+struct Columns<'a> {
+    posed: Posed<'a>,
+    columns: &'a mut [Vector6<f64>],
+}
+
+impl Kernel for Columns<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Posed { chain, scratch } = self.posed;
+        let p = scratch.tip.p.map(|entry| Lane::splat(simd, entry));
+        for ((segment, place), axis) in chain.folded.segments.iter().zip(&chain.places).zip(&scratch.axes) {
+            let mut axis = *axis;
+            into_twist::<Lane<S>>(simd, &mut axis, segment.motion, &p);
+            let twist = Vector6::from(axis.map(|[entry]| entry * place.multiplier));
+            let column = &mut self.columns[place.column];
+            if place.opens_column { *column = twist } else { *column += twist }
+        }
     }
 }
 
@@ -229,13 +252,6 @@ impl Posed<'_> {
     /// When `columns` has not [`Chain::dof`] entries.
     pub fn geometric_jacobian(&self, columns: &mut [Vector6<f64>]) {
         assert_eq!(columns.len(), self.dof(), "one column per joint of the chain");
-        let p = &self.scratch.tip.p;
-        let segments = self.chain.folded.segments.iter().zip(&self.chain.places);
-        for ((segment, place), axis) in segments.zip(&self.scratch.axes) {
-            let twist = twist_of::<f64>((), axis, segment.motion, p);
-            let twist = Vector6::from(twist.map(|entry| entry * place.multiplier));
-            let column = &mut columns[place.column];
-            if place.opens_column { *column = twist } else { *column += twist }
-        }
+        with_instructions(self.scratch.level, Columns { posed: *self, columns });
     }
 }

@@ -3,8 +3,8 @@
 use fearless_simd::Simd;
 
 use super::Chain;
-use super::kinematics::{Axis, Motions, forward, twist_of};
-use super::segment::{Folded, Motion};
+use super::kinematics::{Axis, Motions, forward, into_twist};
+use super::segment::Folded;
 use crate::math::{LaneArray, Lanes};
 
 /// The constants of up to `A::WIDTH` chains; the last chain fills the lanes that are left.
@@ -56,6 +56,7 @@ impl<A: LaneArray> SideBySide<A> {
     }
 
     /// Runs the kinematics at joint positions that lie joint by joint, all lanes of each, filled up to whole vectors of four.
+    /// The Jacobians are [completed](Self::complete_columns) later, when the rotations do not fill the registers any more.
     #[inline(always)]
     pub(crate) fn run<S: Simd>(
         &self,
@@ -67,14 +68,19 @@ impl<A: LaneArray> SideBySide<A> {
         let position = |k: usize| <A::Vector<S> as Lanes>::load_slice(simd, &q[k * A::WIDTH..][..A::WIDTH]);
         let columns = &mut scratch.columns;
         let tip = forward::<A::Vector<S>>(simd, &self.folded, &scratch.motions, position, columns);
-        for (segment, column) in self.folded.segments.iter().zip(columns) {
-            let twist = twist_of::<A::Vector<S>>(simd, column, segment.motion, &tip.p);
-            // Below, a turning axis has its direction there already.
-            let changed = if segment.motion == Motion::Turn { 3 } else { 6 };
-            for (entry, twist) in column[..changed].iter_mut().zip(twist) {
-                twist.store(entry);
-            }
-        }
         Tips { rotation: [tip.x, tip.y, tip.z], position: tip.p }
+    }
+
+    /// Completes the geometric Jacobians of the tips at `position`, which [`run`](Self::run) found.
+    #[inline(always)]
+    pub(crate) fn complete_columns<S: Simd>(
+        &self,
+        simd: S,
+        position: &[A::Vector<S>; 3],
+        scratch: &mut SideBySideScratch<A>,
+    ) {
+        for (segment, column) in self.folded.segments.iter().zip(&mut scratch.columns) {
+            into_twist::<A::Vector<S>>(simd, column, segment.motion, position);
+        }
     }
 }

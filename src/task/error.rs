@@ -1,5 +1,9 @@
 use super::Reference;
-use crate::math::{LaneArray, Lanes, relative_rotation, rotation_vector, small_rotation_vector};
+use crate::math::{
+    Kernel, Lane, LaneArray, Lanes, level, relative_rotation, rotation_vector, small_rotation_vector,
+    with_instructions,
+};
+use fearless_simd::Simd;
 use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector6};
 use serde::{Deserialize, Serialize};
 
@@ -50,27 +54,46 @@ impl TaskKind {
             Self::Position => Vector6::new(offset.x, offset.y, offset.z, 0.0, 0.0, 0.0),
             Self::Pose => {
                 let columns = |rotation: &Rotation3<f64>| rotation.matrix().data.0;
-                let turn = orientation_error(&columns(&tip.rotation), &columns(&reference.rotation));
+                let (tip, reference) = (columns(&tip.rotation), columns(&reference.rotation));
+                let turn = with_instructions(level(), OrientationError(&tip, &reference));
                 Vector6::new(offset.x, offset.y, offset.z, turn[0], turn[1], turn[2])
             }
         }
     }
 }
 
+/// The columns of a rotation matrix.
+type Columns<T> = [[T; 3]; 3];
+
 /// `log(R R_d^T)^vee`, both rotations given by their columns.
-fn orientation_error(r: &[[f64; 3]; 3], d: &[[f64; 3]; 3]) -> [f64; 3] {
-    let (sine, cosine) = relative_rotation(r, d);
-    small_rotation_vector(&sine, cosine).unwrap_or_else(|| {
-        let matrix = |columns: &[[f64; 3]; 3]| Matrix3::from_fn(|row, column| columns[column][row]);
-        rotation_vector(&Rotation3::from_matrix_unchecked(matrix(r) * matrix(d).transpose())).into()
-    })
+struct OrientationError<'a>(&'a Columns<f64>, &'a Columns<f64>);
+
+impl Kernel for OrientationError<'_> {
+    type Output = [f64; 3];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> [f64; 3] {
+        let reals =
+            |columns: &Columns<f64>| columns.map(|column| column.map(|entry| Lane::splat(simd, entry)));
+        let (sine, cosine) = relative_rotation(&reals(self.0), &reals(self.1));
+        match small_rotation_vector(&sine, cosine) {
+            Some(turn) => turn.map(|entry| entry.value),
+            None => large_orientation_error(self.0, self.1),
+        }
+    }
+}
+
+#[cold]
+fn large_orientation_error(r: &Columns<f64>, d: &Columns<f64>) -> [f64; 3] {
+    let matrix = |columns: &Columns<f64>| Matrix3::from_fn(|row, column| columns[column][row]);
+    rotation_vector(&Rotation3::from_matrix_unchecked(matrix(r) * matrix(d).transpose())).into()
 }
 
 /// The first `M` rows (2, 3 or 6) of the task errors of all lanes: the same as [`TaskKind::error`] in each.
 #[inline(always)]
 pub(crate) fn pose_error<V: Lanes<Array: LaneArray>, const M: usize>(
-    (tip, tip_rotation): (&[V; 3], &[[V; 3]; 3]),
-    (wanted, wanted_rotation): (&[V; 3], &[[V; 3]; 3]),
+    (tip, tip_rotation): (&[V; 3], &Columns<V>),
+    (wanted, wanted_rotation): (&[V; 3], &Columns<V>),
     token: V::Token,
 ) -> [V; M] {
     let mut error = [wanted[0]; M];
@@ -91,14 +114,15 @@ pub(crate) fn pose_error<V: Lanes<Array: LaneArray>, const M: usize>(
 /// The orientation errors of lanes of which not all are small.
 #[cold]
 #[inline(never)]
-fn turn_one_by_one<V: Lanes<Array: LaneArray>>(token: V::Token, r: &[[V; 3]; 3], d: &[[V; 3]; 3]) -> [V; 3] {
-    let stored = |columns: &[[V; 3]; 3]| columns.map(|column| column.map(Lanes::to_array));
+fn turn_one_by_one<V: Lanes<Array: LaneArray>>(token: V::Token, r: &Columns<V>, d: &Columns<V>) -> [V; 3] {
+    let stored = |columns: &Columns<V>| columns.map(|column| column.map(Lanes::to_array));
     let (r, d) = (stored(r), stored(d));
     let mut turns = [V::Array::ZERO; 3];
     for lane in 0..V::WIDTH {
         let own =
-            |columns: &[[V::Array; 3]; 3]| columns.map(|column| column.map(|entry| entry.as_ref()[lane]));
-        for (turn, entry) in turns.iter_mut().zip(orientation_error(&own(&r), &own(&d))) {
+            |columns: &Columns<V::Array>| columns.map(|column| column.map(|entry| entry.as_ref()[lane]));
+        let error = OrientationError(&own(&r), &own(&d)).run(token);
+        for (turn, entry) in turns.iter_mut().zip(error) {
             turn.as_mut()[lane] = entry;
         }
     }

@@ -10,6 +10,7 @@ mod time_law;
 pub use curve::{Astroid, Circle, Line, Lissajous, PlanarCurve, Rose, Tricuspid};
 pub use error::TaskKind;
 pub use fourier::{Fourier, Leaning};
+pub(crate) use motion::place_of_sample;
 pub use motion::{Motion, Reference};
 pub use path::{Path, PathPoint, Planar, Plane, Turning};
 pub use time_law::{Linear, Quintic, Sin2, Sin2Sin2, TimeLaw};

@@ -96,24 +96,30 @@ impl Motion {
     pub fn at(&self, t: f64) -> Reference {
         match &self.course {
             Course::Curve(curve) => curve.at(t),
-            Course::Samples { references, .. } => self.recorded(t).copied().unwrap_or_else(|| {
-                let end = if t < 0.0 { &references[0] } else { &references[references.len() - 1] };
-                Reference { twist: Vector6::zeros(), ..*end }
-            }),
-        }
-    }
-
-    /// The reference at time `t` where it lies in memory, if it was sampled beforehand.
-    #[inline]
-    pub(crate) fn recorded(&self, t: f64) -> Option<&Reference> {
-        match &self.course {
-            Course::Curve(_) => None,
             Course::Samples { references, sigma } => {
-                let place = t / sigma + 0.5;
-                if place < 0.0 { None } else { references.get(place as usize) }
+                let recorded = place_of_sample(t, *sigma).and_then(|place| references.get(place));
+                recorded.copied().unwrap_or_else(|| {
+                    let end = if t < 0.0 { &references[0] } else { &references[references.len() - 1] };
+                    Reference { twist: Vector6::zeros(), ..*end }
+                })
             }
         }
     }
+
+    /// The references that it was made of and their gap \[s\], if it was sampled beforehand.
+    pub(crate) fn samples(&self) -> Option<(&Arc<[Reference]>, f64)> {
+        match &self.course {
+            Course::Curve(_) => None,
+            Course::Samples { references, sigma } => Some((references, *sigma)),
+        }
+    }
+}
+
+/// Which sample holds at time `t`, the first being that of `t = 0`.
+#[inline]
+pub(crate) fn place_of_sample(t: f64, sigma: f64) -> Option<usize> {
+    let place = t / sigma + 0.5;
+    (place >= 0.0).then_some(place as usize)
 }
 
 impl Curve {
