@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use nalgebra::Vector6;
 use serde::Serialize;
 
 use super::arguments::CheckArguments;
@@ -200,10 +201,8 @@ fn limits_of(arm: &ArmTrajectory, robot: &Robot, name: &str) -> Result<Vec<Limit
 }
 
 fn worst_error(arm: &ArmTrajectory, path: &Arm, times: &[f64]) -> Met {
-    let mut scratch = path.chain().scratch();
     let mut worst = Met { value: 0.0, t: times[0] };
-    for (n, &t) in times.iter().enumerate() {
-        let error = path.task_error(t, arm.position(n), &mut scratch).norm();
+    for (error, &t) in arm.task_errors(path, times).iter().map(Vector6::norm).zip(times) {
         if !(error <= worst.value) {
             worst = Met { value: error, t };
         }

@@ -142,7 +142,7 @@ fn scenario_text(arguments: &PlanArguments) -> Result<ScenarioText, Failure> {
     Ok(text)
 }
 
-pub(super) fn formula_rows(
+fn formula_rows(
     text: &ScenarioText,
     scenario: &Scenario,
     own: Option<&Path>,

@@ -9,13 +9,12 @@ use super::arguments::{PictureFormat, PlotArguments};
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use super::output::{Output, Show};
-use super::plan::formula_rows;
-use crate::planner::Planner;
+use crate::planner::Arm;
 use crate::report::figure::{Figure, PlanFigures, order_figure, sweep_figures};
 use crate::scenario::{ScenarioText, read_text};
 use crate::study::sweep::SweepTable;
 use crate::study::{Convergence, Criteria};
-use crate::trajectory::{About, Recording, Stage, Trajectory, TrajectoryErrorKind};
+use crate::trajectory::{About, ArmTrajectory, Recording, Stage, Trajectory, TrajectoryErrorKind};
 use nalgebra::Vector6;
 
 /// Pixels of a PNG file for each of the drawing's own.
@@ -37,14 +36,10 @@ impl Show for Drawn {
     }
 }
 
-pub(super) fn run(
-    arguments: &PlotArguments,
-    own: Option<&Path>,
-    output: &mut Output,
-) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &PlotArguments, output: &mut Output) -> Result<Exit, Failure> {
     let saved = &arguments.saved;
     let figures = match Saved::find(saved)? {
-        Saved::Plan(folder) => of_plan(arguments, &folder, own)?,
+        Saved::Plan(folder) => of_plan(arguments, &folder)?,
         Saved::Order(files) => {
             refuse_choices(arguments, "an order study")?;
             files.iter().map(|file| of_order(file)).collect::<Result<_, _>>()?
@@ -142,7 +137,7 @@ fn refuse_choices(arguments: &PlotArguments, what: &str) -> Result<(), Failure> 
     }
 }
 
-fn of_plan(arguments: &PlotArguments, folder: &Path, own: Option<&Path>) -> Result<Vec<Figure>, Failure> {
+fn of_plan(arguments: &PlotArguments, folder: &Path) -> Result<Vec<Figure>, Failure> {
     let mut trajectory = read_trajectory(&folder.join("trajectory.csv"))?;
     let text = ScenarioText::read(&folder.join("scenario.toml"))?;
     let scenario = text.scenario()?;
@@ -150,10 +145,8 @@ fn of_plan(arguments: &PlotArguments, folder: &Path, own: Option<&Path>) -> Resu
     if trajectory.about.is_none() {
         trajectory.about = about(&folder.join("plan.json"), &stage, text.raw())?;
     }
-    let rows = formula_rows(&text, &scenario, own)?;
-    let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
-    let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
-    let mut errors = errors(&trajectory, &stage, &planner);
+    let arms = scenario.arms(text.folder()).map_err(|e| text.placed(e))?;
+    let mut errors = trajectory.arms.iter().map(|arm| errors(arm, &arms, &trajectory.times)).collect();
     choose_arms(&mut trajectory, &mut errors, &mut stage, &arguments.arm)?;
     check_choices(arguments, &trajectory)?;
     let recording = Recording { trajectory: &trajectory, stage: &stage };
@@ -192,24 +185,10 @@ fn document(file: &Path) -> Result<Value, Failure> {
     })
 }
 
-/// The task errors of every arm and sample, from the scenario's own references.
-fn errors(trajectory: &Trajectory, stage: &Stage, planner: &Planner) -> Vec<Vec<Vector6<f64>>> {
-    let of_arm = |arm: &crate::trajectory::ArmTrajectory| {
-        let Some((place, staged)) = stage.arms.iter().enumerate().find(|(_, staged)| staged.name == arm.name)
-        else {
-            return Vec::new();
-        };
-        if staged.chain.dof() != arm.joints.len() {
-            return Vec::new();
-        }
-        let mut scratch = staged.chain.scratch();
-        let mut error = |(n, t): (usize, &f64)| {
-            let pose = staged.chain.forward(arm.position(n), &mut scratch).pose();
-            staged.task.error(&pose, &planner.reference(place, *t))
-        };
-        trajectory.times.iter().enumerate().map(&mut error).collect()
-    };
-    trajectory.arms.iter().map(of_arm).collect()
+/// The task errors of an arm at every sample, by the path that the scenario has for it; none where it has none.
+fn errors(moved: &ArmTrajectory, arms: &[Arm], times: &[f64]) -> Vec<Vector6<f64>> {
+    let is_it = |arm: &&Arm| arm.name() == moved.name && arm.chain().dof() == moved.joints.len();
+    arms.iter().find(is_it).map_or_else(Vec::new, |arm| moved.task_errors(arm, times))
 }
 
 /// Keeps the arms that were named; none for all.

@@ -3,7 +3,7 @@
 use nalgebra::Vector6;
 
 use super::About;
-use crate::planner::{ArmPlan, Plan};
+use crate::planner::{Arm, ArmPlan, Plan};
 
 /// What the joints of one arm do.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +66,17 @@ impl ArmTrajectory {
     pub fn velocity(&self, n: usize) -> Option<&[f64]> {
         let joints = self.joints.len();
         self.velocities.get(n * joints..(n + 1) * joints).filter(|velocity| !velocity.is_empty())
+    }
+
+    /// The [task errors](Arm::task_error) (linear \[m\]; angular \[rad\]) of the samples, at `times` \[s\], of an arm with the
+    /// same joints.
+    ///
+    /// # Panics
+    /// If there are fewer samples than times, or another number of joints.
+    pub fn task_errors(&self, arm: &Arm, times: &[f64]) -> Vec<Vector6<f64>> {
+        let mut scratch = arm.chain().scratch();
+        let at = |(n, t): (usize, &f64)| arm.task_error(*t, self.position(n), &mut scratch);
+        times.iter().enumerate().map(at).collect()
     }
 }
 
