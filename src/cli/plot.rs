@@ -8,9 +8,10 @@ use serde_json::Value;
 use super::arguments::{PictureFormat, PlotArguments};
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
+use super::order;
 use super::output::{Output, Show};
 use crate::planner::Arm;
-use crate::report::figure::{Figure, PlanFigures, order_figure, sweep_figures};
+use crate::report::figure::{Figure, PlanFigures, sweep_figures};
 use crate::scenario::{ScenarioText, read_text};
 use crate::study::sweep::SweepTable;
 use crate::study::{Convergence, Criteria};
@@ -253,20 +254,24 @@ fn of_order(file: &Path) -> Result<Figure, Failure> {
         Some(value.as_array()?.iter().map(|number| number.as_f64().unwrap_or(f64::NAN)).collect())
     };
     let sigmas = numbers(&document["sigma"]).ok_or_else(refused)?;
+    let Criteria { tolerance, floor_margin } = Criteria::default();
+    let criteria = Criteria {
+        tolerance: document["tolerance"].as_f64().unwrap_or(tolerance),
+        floor_margin: document["floor_margin"].as_f64().unwrap_or(floor_margin),
+    };
     let mut rows = Vec::new();
     for row in document["formulas"].as_array().ok_or_else(refused)? {
         let errors =
             numbers(&row["errors"]).filter(|errors| errors.len() == sigmas.len()).ok_or_else(refused)?;
-        let order = row["order"].as_u64().map(|order| order as usize);
-        let floor = row["floor"].as_f64().unwrap_or(0.0);
-        let seen = Convergence::judge(&sigmas, &errors, floor, order, &Criteria::default());
+        let claimed = row["claimed"].as_u64().map(|order| order as usize);
+        let floor = row["floor"].as_f64().unwrap_or(f64::INFINITY);
+        let seen = Convergence::judge(&sigmas, &errors, floor, claimed, &criteria);
         rows.push((row["id"].as_str().unwrap_or_default().to_owned(), seen));
     }
     let rows: Vec<(&str, &Convergence)> = rows.iter().map(|(id, seen)| (id.as_str(), seen)).collect();
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let measure = document["measure"].as_str().unwrap_or_default();
-    let title = format!("{}: {measure} error by sampling gap", stem.trim_start_matches("order-"));
-    Ok(order_figure(&stem, &title, &sigmas, &rows))
+    Ok(order::figure(stem.strip_prefix("order-").unwrap_or(&stem), measure, &sigmas, &rows))
 }
 
 pub(super) fn of_sweep(file: &Path) -> Result<Vec<Figure>, Failure> {
