@@ -26,17 +26,21 @@ fn builder(start: Start) -> PlannerBuilder {
     scheme::dtsmp(arms, 0.001, 0.4).start(start).duration(2.0)
 }
 
+/// Asserts that a planner takes a thousand steps, and that none of them allocates.
+fn steps_without_allocating(mut planner: Planner) {
+    let spent = allocation_counter::measure(|| {
+        for _ in 0..1000 {
+            planner.step();
+        }
+    });
+    assert_eq!((planner.index(), planner.stop()), (1000, None));
+    assert_eq!(spent.count_total, 0, "{spent:?}");
+}
+
 #[test]
 fn a_thousand_steps_of_two_seven_joint_arms_allocate_nothing() {
     for start in [Start::Paper, Start::Ramp, Start::Rk4, Start::Rk8] {
-        let mut planner = planner(start);
-        let spent = allocation_counter::measure(|| {
-            for _ in 0..1000 {
-                planner.step();
-            }
-        });
-        assert_eq!((planner.index(), planner.stop()), (1000, None));
-        assert_eq!(spent.count_total, 0, "{spent:?}");
+        steps_without_allocating(planner(start));
     }
 }
 
@@ -70,27 +74,13 @@ fn shared() -> Planner {
 
 #[test]
 fn a_thousand_steps_of_arms_with_a_common_torso_allocate_nothing() {
-    let mut planner = shared();
-    let spent = allocation_counter::measure(|| {
-        for _ in 0..1000 {
-            planner.step();
-        }
-    });
-    assert_eq!((planner.index(), planner.stop()), (1000, None));
-    assert_eq!(spent.count_total, 0, "{spent:?}");
+    steps_without_allocating(shared());
 }
 
 #[test]
 fn a_thousand_steps_with_noise_allocate_nothing() {
     let noise = Noise { seed: 1, position: 1e-5, linear_velocity: 1e-5, joints: 1e-6, ..Noise::default() };
-    let mut planner = builder(Start::Rk4).noise(noise).build().unwrap();
-    let spent = allocation_counter::measure(|| {
-        for _ in 0..1000 {
-            planner.step();
-        }
-    });
-    assert_eq!((planner.index(), planner.stop()), (1000, None));
-    assert_eq!(spent.count_total, 0, "{spent:?}");
+    steps_without_allocating(builder(Start::Rk4).noise(noise).build().unwrap());
 }
 
 #[test]

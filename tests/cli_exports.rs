@@ -194,3 +194,112 @@ fn an_interrupt_leaves_no_file_that_is_not_whole() {
     assert!(sentence.contains("trajectory.csv can not be written: it was interrupted"), "{sentence}");
     assert_eq!(desk.names("o"), Vec::<String>::new());
 }
+
+/// Two arms on one machine.
+const TORSO: &str = include_str!("../examples/shared_torso.toml");
+
+/// Two machines of one kind.
+fn pair() -> String {
+    let (head, arm) = SMALL.split_at(SMALL.find("[[arm]]").unwrap());
+    let other = arm.replace("\"left\"", "\"right\"").replace("task =", "mount = { xyz = [3, 0, 0] }\ntask =");
+    format!("{head}{arm}\n{other}")
+}
+
+/// The messages of a plan in every format, as files.
+fn messages(desk: &Desk, scenario: &str) -> Vec<String> {
+    let noise = ["--set", "noise.joints=1e-9"];
+    let plan = ["plan", scenario, "--out", "o", "--format", "mcap,moveit,ros2"];
+    desk.run(&[&plan[..], &noise].concat()).expect(0);
+    let is_message = |name: &String| [".mcap", ".yaml"].iter().any(|ending| name.ends_with(ending));
+    desk.names("o").into_iter().filter(is_message).map(|name| format!("o/{name}")).collect()
+}
+
+/// The names of the arms that are checked, and of those that are not there.
+fn checked_arms(checked: &serde_json::Value) -> [Vec<String>; 2] {
+    let names = |list: &serde_json::Value| -> Vec<String> {
+        let name = |one: &serde_json::Value| one["name"].as_str().or(one.as_str()).unwrap().to_owned();
+        list.as_array().unwrap().iter().map(name).collect()
+    };
+    [names(&checked["arms"]), names(&checked["absent"])]
+}
+
+#[test]
+fn arms_of_one_machine_take_their_joints_from_its_messages() {
+    let desk = Desk::new(&[("s.toml", TORSO)]);
+    let files = messages(&desk, "s.toml");
+    assert_eq!(files, ["o/trajectory.left.moveit.yaml", "o/trajectory.left.yaml", "o/trajectory.mcap"]);
+    let of_table = desk.run(&["check", "o", "--json"]).expect(0).json();
+    for file in files {
+        let scenario = "o/scenario.toml";
+        let checked = desk.run(&["check", &file, "--scenario", scenario, "--json"]).expect(0).json();
+        assert_eq!(checked_arms(&checked), [vec!["left", "right"], Vec::new()], "{file}");
+        // The times of messages are rounded to nanoseconds, the positions are not.
+        for (arm, known) in [0, 1].map(|arm| (&checked["arms"][arm], &of_table["arms"][arm])) {
+            let joints = |arm: &serde_json::Value| arm["joints"].as_array().unwrap().clone();
+            for (joint, known) in joints(arm).iter().zip(joints(known)) {
+                assert_eq!(["joint", "lowest", "highest"].map(|key| joint[key] == known[key]), [true; 3]);
+            }
+            assert_eq!(joints(arm).len(), 8);
+            let error = |arm: &serde_json::Value| arm["max_error"].as_f64().unwrap();
+            assert!((error(arm) - error(known)).abs() < 1e-9, "{file}: {arm}");
+        }
+    }
+}
+
+#[test]
+fn two_machines_are_told_apart_in_messages() {
+    let desk = Desk::new(&[("s.toml", &pair())]);
+    for file in messages(&desk, "s.toml") {
+        let run = desk.run(&["check", &file, "--scenario", "s.toml", "--json"]).expect(0);
+        let both = ["left", "right"];
+        let here: Vec<&str> =
+            both.into_iter().filter(|arm| file.contains(arm) || file.contains("mcap")).collect();
+        let absent: Vec<&str> = both.into_iter().filter(|arm| !here.contains(arm)).collect();
+        assert_eq!(checked_arms(&run.json()), [here, absent.clone()], "{file}");
+        let text = desk.run(&["check", &file, "--scenario", "s.toml"]).expect(0).out;
+        assert_eq!(text.contains("nothing of it moves here"), !absent.is_empty(), "{text}");
+    }
+    // Of no name there is no telling which of the two it is, unless the scenario has one only.
+    let text = std::fs::read_to_string(desk.path("o/trajectory.left.yaml")).unwrap();
+    std::fs::write(desk.path("theirs.yaml"), text.replace("# machine: left\n", "")).unwrap();
+    let refused = desk.run(&["check", "theirs.yaml", "--scenario", "s.toml"]).expect(2).err;
+    assert!(refused.contains("`arm` may be arm `left` or arm `right`"), "{refused}");
+    std::fs::write(desk.path("one.toml"), SMALL).unwrap();
+    let one = desk.run(&["check", "theirs.yaml", "--scenario", "one.toml", "--json"]).expect(0).json();
+    assert_eq!(checked_arms(&one), [vec!["left"], Vec::new()]);
+    let refused = desk.run(&["check", "o/trajectory.mcap", "--scenario", "one.toml"]).expect(2).err;
+    assert!(refused.contains("the scenario has no arm `right`"), "{refused}");
+}
+
+#[test]
+fn joints_of_no_arm_and_arms_without_their_joints_are_refused() {
+    let desk = Desk::new(&[("s.toml", TORSO)]);
+    let files = messages(&desk, "s.toml");
+    let start = TORSO.rfind("[[arm]]").unwrap();
+    std::fs::write(desk.path("left.toml"), &TORSO[..start]).unwrap();
+    for file in &files {
+        let refused = desk.run(&["check", file, "--scenario", "left.toml"]).expect(3).err;
+        let told =
+            "moves `right_shoulder_roll`, which is no joint of arm `left` of the scenario; did you mean";
+        assert!(refused.contains(told), "{file}: {refused}");
+    }
+    let slow = ["plan", "left.toml", "--set", "duration=8", "--out", "one", "--format", "mcap,moveit,ros2"];
+    desk.run(&slow).expect(0);
+    for file in files.iter().map(|file| file.replacen('o', "one", 1)) {
+        let refused = desk.run(&["check", &file, "--scenario", "s.toml"]).expect(3).err;
+        let told = "does not move joint `right_shoulder_roll` of arm `right` of the scenario";
+        assert!(refused.contains(told), "{file}: {refused}");
+    }
+    let text = std::fs::read_to_string(desk.path("o/trajectory.left.yaml")).unwrap();
+    for (to, told) in [
+        (
+            "left_wrist_yawn",
+            "no joint of arms `left` and `right` of the scenario; did you mean left_wrist_yaw?",
+        ),
+        ("lift", "joint `lift` twice"),
+    ] {
+        std::fs::write(desk.path("x.yaml"), text.replacen("left_wrist_yaw", to, 1)).unwrap();
+        let run = desk.run(&["check", "x.yaml", "--scenario", "s.toml"]);
+        assert!([2, 3].contains(&run.code) && run.err.contains(told), "{}: {}", run.code, run.err);
+    }
+}

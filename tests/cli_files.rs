@@ -83,6 +83,75 @@ fn a_full_disk_is_a_sentence_and_a_closed_pipe_is_silent() {
     assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));
 }
 
+/// Runs the program where no file may become longer than 4 KiB: writing fails in the middle, as on a full disk.
+#[cfg(unix)]
+fn where_little_fits(desk: &Desk, arguments: &[&str]) -> std::process::Output {
+    std::process::Command::new("sh")
+        .args(["-c", r#"trap "" XFSZ; ulimit -f 8; exec "$0" "$@""#])
+        .arg(assert_cmd::cargo::cargo_bin("kinstep"))
+        .args(arguments)
+        .current_dir(desk.path("."))
+        .output()
+        .unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn what_does_not_fit_on_the_disk_takes_nothing_with_it() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    desk.run(&["plan", "s.toml", "--out", "o"]).expect(0);
+    let content = |folder: &str| -> Vec<(String, Vec<u8>)> {
+        let read = |name: String| {
+            let bytes = std::fs::read(desk.path(folder).join(&name)).unwrap();
+            (name, bytes)
+        };
+        desk.names(folder).into_iter().map(read).collect()
+    };
+    let before = content("o");
+    for (arguments, file) in [
+        (&["plan", "s.toml", "--set", "law.h=0.3", "--out", "o", "--force"][..], "o/trajectory.csv"),
+        (&["plan", "s.toml", "--out", "new"], "new/trajectory.csv"),
+        (&["export", "o", "--format", "mcap"], "o/trajectory.mcap"),
+        (&["plot", "o", "--figure", "joints", "--out", "pictures"], "pictures/joints-left.svg"),
+        (&["robot", "export", "baxter", "--urdf", "b.urdf"], "b.urdf"),
+    ] {
+        let output = where_little_fits(&desk, arguments);
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(6), "{arguments:?}: {told}");
+        assert!(told.contains(&format!("{file} can not be written: it would be larger")), "{told}");
+        assert!(content("o") == before, "{arguments:?}: what was there is not as it was");
+    }
+    assert_eq!(desk.names("."), ["new", "o", "pictures", "s.toml"]);
+    assert_eq!([desk.names("new"), desk.names("pictures")], [Vec::<String>::new(), Vec::new()]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_sweep_that_filled_the_disk_goes_on_where_it_stopped() {
+    let desk = Desk::new(&[("s.toml", SMALL)]);
+    let sweep = |out: &'static str| {
+        ["sweep", "s.toml", "--vary", "law.h=linspace(0.1, 0.6, 40)", "--set", "sigma=0.05", "--out", out]
+    };
+    desk.run(&sweep("whole.csv")).expect(0);
+    let whole = std::fs::read(desk.path("whole.csv")).unwrap();
+    assert!(whole.len() > 4096, "{} bytes would have fitted", whole.len());
+    let output = where_little_fits(&desk, &sweep("grid.csv"));
+    assert_eq!(output.status.code(), Some(6), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(!desk.path("grid.csv").exists());
+    let journal = desk.path("grid.csv.journal");
+    assert!(std::fs::read_to_string(&journal).unwrap().lines().count() > 2, "nothing was kept");
+    desk.run(&sweep("grid.csv")).expect(0);
+    assert!(std::fs::read(desk.path("grid.csv")).unwrap() == whole, "the table is another one");
+    // A journal that did not come to the end of its first line has nothing in it, and is begun again.
+    std::fs::remove_file(desk.path("grid.csv")).unwrap();
+    std::fs::write(&journal, "").unwrap();
+    desk.run(&sweep("grid.csv")).expect(0);
+    assert!(std::fs::read(desk.path("grid.csv")).unwrap() == whole, "the table is another one");
+    std::fs::write(&journal, "something else").unwrap();
+    std::fs::remove_file(desk.path("grid.csv")).unwrap();
+    desk.run(&sweep("grid.csv")).expect(6);
+}
+
 #[test]
 fn usage_is_exit_2_in_both_forms() {
     for arguments in [&["plann"][..], &["plan", "--sett", "a=1"], &["robot", "fk"], &["schema", "arms"], &[]]

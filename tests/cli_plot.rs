@@ -221,4 +221,21 @@ fn a_study_is_drawn_again() {
         svg.contains("ab4: order ") && svg.contains("sampling gap"),
         "the window that was fitted is named"
     );
+    assert!(svg == read(&desk, "study/order-kepler.svg"), "it is not the picture that was written");
+}
+
+#[test]
+fn a_study_is_drawn_again_by_its_own_criteria() {
+    let desk = Desk::new(&[]);
+    let study = |floor_margin: &str, out: &str| {
+        let set = format!("study.floor_margin={floor_margin}");
+        desk.run(&["order", "kepler", "--formula", "ab4", "--set", &set, "--out", out]);
+        desk.run(&["plot", out]).expect(0);
+        let [own, again] =
+            ["", "figures/"].map(|folder| read(&desk, &format!("{out}/{folder}order-kepler.svg")));
+        assert!(own == again, "with a floor margin of {floor_margin} another picture is drawn");
+        own
+    };
+    // By a margin so wide most rungs lie near the floor and are left out of the fit.
+    assert!(study("100", "usual") != study("1e8", "wide"), "the margin makes no difference here");
 }

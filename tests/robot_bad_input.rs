@@ -4,11 +4,14 @@
 //! change of wording, `KINSTEP_WRITE_EXPECTED=1 cargo test --test robot_bad_input` writes the files anew; look at
 //! the difference before committing it.
 
+mod chains;
+
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use chains::chain_of;
 use kinstep::robot::{
     ChainError, Diagnostic, JointKind, MAX_DEPTH, MAX_JOINTS, ReadError, Robot, Severity, UrdfOptions,
 };
@@ -261,19 +264,6 @@ fn the_deepest_allowed_nesting_is_read() {
     let text =
         format!("<robot name=\"deep\"><link name=\"b\"/><link name=\"c\"/>{joint}{open}{close}</robot>");
     assert!(Robot::from_urdf(&text).is_ok());
-}
-
-fn chain_of(joints: usize) -> String {
-    let mut text = String::from("<robot name=\"long\"><link name=\"l0\"/>");
-    for joint in 1..=joints {
-        let _ = write!(
-            text,
-            "<link name=\"l{joint}\"/><joint name=\"j{joint}\" type=\"continuous\"><parent link=\"l{}\"/>\
-             <child link=\"l{joint}\"/></joint>",
-            joint - 1
-        );
-    }
-    text + "</robot>"
 }
 
 #[test]

@@ -2,9 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
+mod chains;
+
 use std::fmt::Write;
 
 use allocation_counter::measure;
+use chains::chain_of;
 use kinstep::robot::{MAX_BYTES, MAX_DEPTH, Robot, UrdfOptions};
 
 const MEGABYTE: u64 = 1 << 20;
@@ -14,19 +17,6 @@ fn refused(text: &str) -> (String, u64) {
     let mut message = String::new();
     let counted = measure(|| message = Robot::from_urdf(text).expect_err("too much").to_string());
     (message, counted.bytes_max)
-}
-
-fn chain_of(joints: usize) -> String {
-    let mut text = String::from("<robot name=\"long\"><link name=\"l0\"/>");
-    for joint in 1..=joints {
-        let _ = write!(
-            text,
-            "<link name=\"l{joint}\"/><joint name=\"j{joint}\" type=\"continuous\"><parent link=\"l{}\"/>\
-             <child link=\"l{joint}\"/></joint>",
-            joint - 1
-        );
-    }
-    text + "</robot>"
 }
 
 #[test]

@@ -3,16 +3,18 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use nalgebra::Vector6;
 use serde::Serialize;
 
 use super::arguments::CheckArguments;
 use super::export;
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
+use super::share_out::{Shares, share_out};
 use crate::planner::Arm;
 use crate::report::{Table, short};
 use crate::robot::{Limits, Robot};
-use crate::scenario::{ScenarioText, suggestion};
+use crate::scenario::ScenarioText;
 use crate::trajectory::{ArmTrajectory, JointFigures, Met, TimeFigures, Trajectory};
 
 #[derive(Serialize)]
@@ -22,6 +24,8 @@ struct Checked {
     duration: f64,
     time: Clock,
     arms: Vec<ArmChecked>,
+    /// The arms of the scenario whose machines do not move here.
+    absent: Vec<String>,
     /// What failed, as sentences.
     failures: Vec<String>,
 }
@@ -101,6 +105,8 @@ struct Against {
     limits: Vec<Vec<Limits>>,
     /// The arm whose path each arm should follow.
     paths: Vec<Option<Arm>>,
+    /// The arms of the scenario that are not in the trajectory.
+    absent: Vec<String>,
 }
 
 pub(super) fn run(arguments: &CheckArguments, output: &mut Output) -> Result<Exit, Failure> {
@@ -115,36 +121,23 @@ pub(super) fn run(arguments: &CheckArguments, output: &mut Output) -> Result<Exi
 
 impl Against {
     fn of(arguments: &CheckArguments) -> Result<Self, Failure> {
-        let (mut trajectory, stage) = export::load(&arguments.trajectory, &arguments.robot)?;
+        let (mut trajectory, _) = export::load(&arguments.trajectory, &arguments.robot)?;
         let own = arguments.trajectory.join("scenario.toml");
         let folder = arguments.trajectory.is_dir().then_some(own.as_path());
-        let mut arms = match arguments.scenario.as_deref().or(folder) {
+        let arms = match arguments.scenario.as_deref().or(folder) {
             Some(file) => scenario_arms(file)?,
             None => Vec::new(),
         };
-        let mut paths: Vec<Option<Arm>> = Vec::new();
-        let is_lone = trajectory.arms.len() == 1 && arms.len() == 1;
-        for arm in &mut trajectory.arms {
-            let place = arms.iter().position(|path| is_lone || path.name() == arm.name);
-            let path = place.map(|place| arms.swap_remove(place));
-            if let Some(path) = &path {
-                *arm = ordered(arm, path)?;
-            }
-            paths.push(path);
-        }
-        if let Some(missing) = arms.first().filter(|_| arguments.scenario.is_some()) {
-            let known = trajectory.arms.iter().map(|arm| arm.name.as_str());
-            let hint = suggestion(missing.name(), known);
-            return Err(Failure::usage(format!("the trajectory has no arm `{}`; {hint}", missing.name())));
-        }
         let robot = arguments.robot.robot.as_deref();
         let robot = robot.map(|name| Ok::<_, Failure>((name, export::robot(name)?))).transpose()?;
+        let Shares { moved, absent } = share_out(&trajectory.arms, arms, robot.is_some())?;
+        let paths: Vec<Option<Arm>>;
+        (trajectory.arms, paths) = moved.into_iter().unzip();
         let mut limits = Vec::new();
         for (arm, path) in trajectory.arms.iter().zip(&paths) {
-            let chain = stage.arm(&arm.name).map(|staged| &staged.chain).or(path.as_ref().map(Arm::chain));
-            limits.push(match (&robot, chain) {
+            limits.push(match (&robot, path) {
                 (Some((name, robot)), _) => limits_of(arm, robot, name)?,
-                (None, Some(chain)) => chain.joints().iter().map(|joint| joint.limits).collect(),
+                (None, Some(path)) => path.chain().joints().iter().map(|joint| joint.limits).collect(),
                 (None, None) => {
                     return Err(Failure::usage(
                         "name the robot that moves: --robot FILE, or --scenario FILE",
@@ -152,7 +145,7 @@ impl Against {
                 }
             });
         }
-        Ok(Self { trajectory, limits, paths })
+        Ok(Self { trajectory, limits, paths, absent })
     }
 
     fn checked(&self, max_error: f64) -> Checked {
@@ -184,6 +177,7 @@ impl Against {
                 repeated_samples: clock.repeated.map_or(0, |(count, _)| count),
             },
             arms,
+            absent: self.absent.clone(),
             failures,
         }
     }
@@ -192,24 +186,6 @@ impl Against {
 fn scenario_arms(file: &Path) -> Result<Vec<Arm>, Failure> {
     let text = ScenarioText::read(file)?;
     Ok(text.scenario()?.arms(text.folder()).map_err(|e| text.placed(e))?)
-}
-
-/// Returns the arm with its joints in the order of a path's chain.
-fn ordered(arm: &ArmTrajectory, path: &Arm) -> Result<ArmTrajectory, Failure> {
-    let order: Vec<&str> = path.chain().joints().iter().map(|joint| joint.name.as_str()).collect();
-    let ordered = arm.in_order(&order);
-    if ordered.joints == order {
-        return Ok(ordered);
-    }
-    for joint in &arm.joints {
-        export::check_joint(joint, &order, &format!("arm `{}` of the scenario", path.name()))?;
-    }
-    let missing = order.iter().find(|name| !arm.joints.iter().any(|own| own == *name));
-    let missing = missing.copied().unwrap_or_default();
-    Err(Failure::new(
-        Exit::Robot,
-        format!("arm `{}` does not move joint `{missing}` of the scenario", arm.name),
-    ))
 }
 
 /// The limits of a robot's joints by their names.
@@ -225,10 +201,8 @@ fn limits_of(arm: &ArmTrajectory, robot: &Robot, name: &str) -> Result<Vec<Limit
 }
 
 fn worst_error(arm: &ArmTrajectory, path: &Arm, times: &[f64]) -> Met {
-    let mut scratch = path.chain().scratch();
     let mut worst = Met { value: 0.0, t: times[0] };
-    for (n, &t) in times.iter().enumerate() {
-        let error = path.task_error(t, arm.position(n), &mut scratch).norm();
+    for (error, &t) in arm.task_errors(path, times).iter().map(Vector6::norm).zip(times) {
         if !(error <= worst.value) {
             worst = Met { value: error, t };
         }
@@ -345,6 +319,9 @@ impl Show for Checked {
                 let _ =
                     writeln!(text, "{}: worst task error {} at t = {} s", arm.name, short(error), moment(t));
             }
+        }
+        for arm in &self.absent {
+            let _ = writeln!(text, "{arm}: nothing of it moves here");
         }
         match self.failures.as_slice() {
             [] => text.push_str("\nevery check holds\n"),

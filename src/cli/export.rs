@@ -107,10 +107,13 @@ pub(super) fn check_joint(joint: &str, known: &[&str], robot: &str) -> Result<()
     if known.contains(&joint) {
         return Ok(());
     }
+    Err(unknown_joint(joint, known, &format!("{robot} that it could")).in_file(robot))
+}
+
+/// The refusal of a joint that is not among those that are known, with the nearest of them.
+pub(super) fn unknown_joint(joint: &str, known: &[&str], whose: &str) -> Failure {
     let hint = suggestion(joint, known.iter().copied());
-    let message =
-        format!("the trajectory moves `{joint}`, which is no joint of {robot} that it could; {hint}");
-    Err(Failure::new(Exit::Robot, message).in_file(robot))
+    Failure::new(Exit::Robot, format!("the trajectory moves `{joint}`, which is no joint of {whose}; {hint}"))
 }
 
 /// Puts the joints of every arm into the order of its chain.

@@ -28,6 +28,7 @@ mod robot_export;
 mod robot_ik;
 mod robot_show;
 mod schema;
+mod share_out;
 mod sweep;
 
 use std::ffi::OsString;
@@ -71,7 +72,7 @@ fn dispatch(arguments: &Arguments, output: &mut Output) -> Result<Exit, Failure>
     let own = arguments.formulas.as_deref();
     match &arguments.command {
         Command::Plan(command) => plan::run(command, own, output),
-        Command::Plot(command) => plot::run(command, own, output),
+        Command::Plot(command) => plot::run(command, output),
         Command::Order(command) => order::run(command, own, output),
         Command::Reproduce(command) => reproduce::run(command, output),
         Command::Formula(command) => formula::run(command, own, output),

@@ -8,7 +8,7 @@ use super::arguments::OrderArguments;
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use super::output::Output;
-use crate::report::figure::order_figure;
+use crate::report::figure::{Figure, order_figure};
 use crate::report::{OrderPage, Table};
 use crate::scenario::{ScenarioText, suite};
 use crate::study::{Convergence, RowStudy, ScenarioStudy};
@@ -135,11 +135,17 @@ fn write(folder: &Folder, studied: &Studied) -> Result<(), Failure> {
     let page = studied.page();
     let seen: Vec<(&str, &Convergence)> =
         studied.rows.iter().map(|row| (row.id.as_str(), &row.seen)).collect();
-    let title = format!("{}: {} error by sampling gap", studied.stem(), studied.study.measure().name());
-    let figure = order_figure("order", &title, &studied.study.ladder().sigmas(), &seen);
+    let measure = studied.study.measure().name();
+    let figure = figure(&studied.stem(), measure, &studied.study.ladder().sigmas(), &seen);
     folder.write(&json, |out| writeln!(out, "{:#}", page.json()))?;
     folder.write(&csv, |out| out.write_all(page.csv().as_bytes()))?;
     folder.write(&svg, |out| out.write_all(figure.to_svg().as_bytes()))
+}
+
+/// Draws the study of the scenario `name`.
+pub(super) fn figure(name: &str, measure: &str, sigmas: &[f64], seen: &[(&str, &Convergence)]) -> Figure {
+    let title = format!("{name}: {measure} error by sampling gap");
+    order_figure(&format!("order-{name}"), &title, sigmas, seen)
 }
 
 /// One study is the document itself; several are a list in it.

@@ -29,7 +29,10 @@ pub(super) fn run(
     let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
     let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
     keep_starts(&mut scenario, &planner);
-    let results = Results::open(arguments, &scenario, &text)?;
+    let wants_details = output.is_verbose() && !output.wants_json();
+    let is_staged = wants_details || arguments.written.out.is_some();
+    let stage = is_staged.then(|| scenario.stage(text.folder())).transpose().map_err(|e| text.placed(e))?;
+    let results = Results::open(arguments, stage.as_ref())?;
     clock.done("reading");
     let mut plan = run_planner(planner);
     clock.done("planning");
@@ -38,11 +41,8 @@ pub(super) fn run(
     // What is written down says what was run, whatever the default becomes later.
     scenario.formula.get_or_insert_with(|| plan.formula.clone());
     let next = suggestions(&plan, table, &scenario);
-    let details = if output.is_verbose() && !output.wants_json() {
-        plan_details(&plan, &scenario.stage(text.folder()).map_err(|e| text.placed(e))?)
-    } else {
-        String::new()
-    };
+    let details = stage.as_ref().filter(|_| wants_details);
+    let details = details.map_or_else(String::new, |stage| plan_details(&plan, stage));
     let mut names = Vec::new();
     if let Some(results) = results {
         let again = scenario.relocated(text.folder(), own, results.path())?.to_toml();
@@ -142,7 +142,7 @@ fn scenario_text(arguments: &PlanArguments) -> Result<ScenarioText, Failure> {
     Ok(text)
 }
 
-pub(super) fn formula_rows(
+fn formula_rows(
     text: &ScenarioText,
     scenario: &Scenario,
     own: Option<&Path>,

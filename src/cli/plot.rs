@@ -8,14 +8,14 @@ use serde_json::Value;
 use super::arguments::{PictureFormat, PlotArguments};
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
+use super::order;
 use super::output::{Output, Show};
-use super::plan::formula_rows;
-use crate::planner::Planner;
-use crate::report::figure::{Figure, PlanFigures, order_figure, sweep_figures};
+use crate::planner::Arm;
+use crate::report::figure::{Figure, PlanFigures, sweep_figures};
 use crate::scenario::{ScenarioText, read_text};
 use crate::study::sweep::SweepTable;
 use crate::study::{Convergence, Criteria};
-use crate::trajectory::{About, Recording, Stage, Trajectory, TrajectoryErrorKind};
+use crate::trajectory::{About, ArmTrajectory, Recording, Stage, Trajectory, TrajectoryErrorKind};
 use nalgebra::Vector6;
 
 /// Pixels of a PNG file for each of the drawing's own.
@@ -37,14 +37,10 @@ impl Show for Drawn {
     }
 }
 
-pub(super) fn run(
-    arguments: &PlotArguments,
-    own: Option<&Path>,
-    output: &mut Output,
-) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &PlotArguments, output: &mut Output) -> Result<Exit, Failure> {
     let saved = &arguments.saved;
     let figures = match Saved::find(saved)? {
-        Saved::Plan(folder) => of_plan(arguments, &folder, own)?,
+        Saved::Plan(folder) => of_plan(arguments, &folder)?,
         Saved::Order(files) => {
             refuse_choices(arguments, "an order study")?;
             files.iter().map(|file| of_order(file)).collect::<Result<_, _>>()?
@@ -142,7 +138,7 @@ fn refuse_choices(arguments: &PlotArguments, what: &str) -> Result<(), Failure> 
     }
 }
 
-fn of_plan(arguments: &PlotArguments, folder: &Path, own: Option<&Path>) -> Result<Vec<Figure>, Failure> {
+fn of_plan(arguments: &PlotArguments, folder: &Path) -> Result<Vec<Figure>, Failure> {
     let mut trajectory = read_trajectory(&folder.join("trajectory.csv"))?;
     let text = ScenarioText::read(&folder.join("scenario.toml"))?;
     let scenario = text.scenario()?;
@@ -150,10 +146,8 @@ fn of_plan(arguments: &PlotArguments, folder: &Path, own: Option<&Path>) -> Resu
     if trajectory.about.is_none() {
         trajectory.about = about(&folder.join("plan.json"), &stage, text.raw())?;
     }
-    let rows = formula_rows(&text, &scenario, own)?;
-    let table = rows.table_for(scenario.formula.as_deref().unwrap_or_default())?;
-    let planner = scenario.planner(table, text.folder()).map_err(|e| text.placed(e))?;
-    let mut errors = errors(&trajectory, &stage, &planner);
+    let arms = scenario.arms(text.folder()).map_err(|e| text.placed(e))?;
+    let mut errors = trajectory.arms.iter().map(|arm| errors(arm, &arms, &trajectory.times)).collect();
     choose_arms(&mut trajectory, &mut errors, &mut stage, &arguments.arm)?;
     check_choices(arguments, &trajectory)?;
     let recording = Recording { trajectory: &trajectory, stage: &stage };
@@ -192,24 +186,10 @@ fn document(file: &Path) -> Result<Value, Failure> {
     })
 }
 
-/// The task errors of every arm and sample, from the scenario's own references.
-fn errors(trajectory: &Trajectory, stage: &Stage, planner: &Planner) -> Vec<Vec<Vector6<f64>>> {
-    let of_arm = |arm: &crate::trajectory::ArmTrajectory| {
-        let Some((place, staged)) = stage.arms.iter().enumerate().find(|(_, staged)| staged.name == arm.name)
-        else {
-            return Vec::new();
-        };
-        if staged.chain.dof() != arm.joints.len() {
-            return Vec::new();
-        }
-        let mut scratch = staged.chain.scratch();
-        let mut error = |(n, t): (usize, &f64)| {
-            let pose = staged.chain.forward(arm.position(n), &mut scratch).pose();
-            staged.task.error(&pose, &planner.reference(place, *t))
-        };
-        trajectory.times.iter().enumerate().map(&mut error).collect()
-    };
-    trajectory.arms.iter().map(of_arm).collect()
+/// The task errors of an arm at every sample, by the path that the scenario has for it; none where it has none.
+fn errors(moved: &ArmTrajectory, arms: &[Arm], times: &[f64]) -> Vec<Vector6<f64>> {
+    let is_it = |arm: &&Arm| arm.name() == moved.name && arm.chain().dof() == moved.joints.len();
+    arms.iter().find(is_it).map_or_else(Vec::new, |arm| moved.task_errors(arm, times))
 }
 
 /// Keeps the arms that were named; none for all.
@@ -274,20 +254,24 @@ fn of_order(file: &Path) -> Result<Figure, Failure> {
         Some(value.as_array()?.iter().map(|number| number.as_f64().unwrap_or(f64::NAN)).collect())
     };
     let sigmas = numbers(&document["sigma"]).ok_or_else(refused)?;
+    let Criteria { tolerance, floor_margin } = Criteria::default();
+    let criteria = Criteria {
+        tolerance: document["tolerance"].as_f64().unwrap_or(tolerance),
+        floor_margin: document["floor_margin"].as_f64().unwrap_or(floor_margin),
+    };
     let mut rows = Vec::new();
     for row in document["formulas"].as_array().ok_or_else(refused)? {
         let errors =
             numbers(&row["errors"]).filter(|errors| errors.len() == sigmas.len()).ok_or_else(refused)?;
-        let order = row["order"].as_u64().map(|order| order as usize);
-        let floor = row["floor"].as_f64().unwrap_or(0.0);
-        let seen = Convergence::judge(&sigmas, &errors, floor, order, &Criteria::default());
+        let claimed = row["claimed"].as_u64().map(|order| order as usize);
+        let floor = row["floor"].as_f64().unwrap_or(f64::INFINITY);
+        let seen = Convergence::judge(&sigmas, &errors, floor, claimed, &criteria);
         rows.push((row["id"].as_str().unwrap_or_default().to_owned(), seen));
     }
     let rows: Vec<(&str, &Convergence)> = rows.iter().map(|(id, seen)| (id.as_str(), seen)).collect();
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let measure = document["measure"].as_str().unwrap_or_default();
-    let title = format!("{}: {measure} error by sampling gap", stem.trim_start_matches("order-"));
-    Ok(order_figure(&stem, &title, &sigmas, &rows))
+    Ok(order::figure(stem.strip_prefix("order-").unwrap_or(&stem), measure, &sigmas, &rows))
 }
 
 pub(super) fn of_sweep(file: &Path) -> Result<Vec<Figure>, Failure> {

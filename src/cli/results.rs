@@ -10,7 +10,6 @@ use super::plot;
 use crate::planner::Plan;
 use crate::report::figure::plan_figures;
 use crate::report::{PlanFormat, PlanJson, PlanPage, Suggestion};
-use crate::scenario::{Scenario, ScenarioText};
 use crate::trajectory::{About, Export, Recording, Stage, Trajectory};
 
 /// The files beside the trajectory.
@@ -24,7 +23,7 @@ const FIGURES: &str = "figures";
 pub(super) struct Results<'a> {
     arguments: &'a PlanArguments,
     folder: Folder,
-    stage: Stage,
+    stage: &'a Stage,
     exports: Exports,
 }
 
@@ -39,18 +38,14 @@ pub(super) struct Story<'a> {
 }
 
 impl<'a> Results<'a> {
-    /// Opens the folder, if one was asked for; refuses what could not be written in the end.
+    /// Opens the folder, if one was asked for and there are robots to write of; refuses what could not be written in the end.
     pub(super) fn open(
         arguments: &'a PlanArguments,
-        scenario: &Scenario,
-        text: &ScenarioText,
+        stage: Option<&'a Stage>,
     ) -> Result<Option<Self>, Failure> {
-        if arguments.written.out.is_none() {
-            return Ok(None);
-        }
+        let Some(stage) = stage.filter(|_| arguments.written.out.is_some()) else { return Ok(None) };
         let chosen = formats::formats(&arguments.format, &[Export::Csv])?;
-        let stage = scenario.stage(text.folder()).map_err(|e| text.placed(e))?;
-        let exports = Exports::new(&chosen, &formats::machines(&stage), arguments.append_stop)?;
+        let exports = Exports::new(&chosen, &formats::machines(stage), arguments.append_stop)?;
         let names: Vec<&str> = names(arguments, &exports).collect();
         let folder = arguments.written.folder(&names)?;
         Ok(folder.map(|folder| Self { arguments, folder, stage, exports }))
@@ -65,8 +60,8 @@ impl<'a> Results<'a> {
     /// reasons for what can not among the plan's warnings.
     pub(super) fn write(mut self, plan: &mut Plan, story: &Story<'_>) -> Result<Vec<String>, Failure> {
         let folder = self.folder.interruptible(formats::interruption());
-        let trajectory = Trajectory::of(plan, Some(About::of(plan, story.scenario, &self.stage)));
-        let recording = Recording { trajectory: &trajectory, stage: &self.stage };
+        let trajectory = Trajectory::of(plan, Some(About::of(plan, story.scenario, self.stage)));
+        let recording = Recording { trajectory: &trajectory, stage: self.stage };
         if !plan.is_completed() {
             plan.warnings.extend(self.exports.keep_possible(recording));
         }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector6};
 use serde::Serialize;
 
-use super::arguments::{ChainArguments, RobotCommand, RobotFile, RobotShow};
+use super::arguments::{ChainArguments, KinematicsArguments, RobotCommand, RobotFile, RobotShow};
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
 use super::robot_show::RobotCard;
@@ -111,7 +111,7 @@ fn all_positions(text: Option<&str>, robot: &Robot) -> Result<Vec<f64>, Failure>
     Ok(positions)
 }
 
-fn kinematics(arguments: &ChainArguments, jacobian: bool, output: &mut Output) -> Result<Exit, Failure> {
+fn kinematics(arguments: &KinematicsArguments, jacobian: bool, output: &mut Output) -> Result<Exit, Failure> {
     let result = Kinematics::new(arguments, jacobian, output)?;
     output.show(&result).map(|()| Exit::Done)
 }
@@ -248,10 +248,10 @@ struct Kinematics {
 }
 
 impl Kinematics {
-    fn new(arguments: &ChainArguments, shows_jacobian: bool, output: &Output) -> Result<Self, Failure> {
-        let ChainArguments { file, base, tip, q, tool } = arguments;
-        let (chain, tip) = tooled_chain(file, [base, tip], tool.as_deref(), output)?;
-        let q = joint_positions("--q", q.as_deref(), &chain)?;
+    fn new(arguments: &KinematicsArguments, shows_jacobian: bool, output: &Output) -> Result<Self, Failure> {
+        let ChainArguments { file, base, .. } = &arguments.chain;
+        let (chain, tip) = tooled_chain(&arguments.chain, output)?;
+        let q = joint_positions("--q", arguments.q.as_deref(), &chain)?;
         let mut scratch = chain.scratch();
         let posed = chain.forward(&q, &mut scratch);
         let pose = posed.pose();
@@ -275,13 +275,9 @@ impl Kinematics {
 }
 
 /// Returns the chain between two links of a robot, with a tool on the tip, and the link at which it then ends.
-pub(super) fn tooled_chain(
-    file: &RobotFile,
-    [base, tip]: [&str; 2],
-    tool: Option<&str>,
-    output: &Output,
-) -> Result<(Chain, String), Failure> {
-    let (robot, tip) = tooled(read(file, output)?, tip, tool)?;
+pub(super) fn tooled_chain(arguments: &ChainArguments, output: &Output) -> Result<(Chain, String), Failure> {
+    let ChainArguments { file, base, tip, tool } = arguments;
+    let (robot, tip) = tooled(read(file, output)?, tip, tool.as_deref())?;
     let chain = robot.chain(base, &tip).map_err(|e| {
         let is_free = matches!(e, ChainError::UnsupportedJoint { .. });
         let remedy = if is_free { ", or hold the joint still with --lock JOINT=0" } else { "" };

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use nalgebra::{IsometryMatrix3, Quaternion, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde::Serialize;
 
-use super::arguments::InverseArguments;
+use super::arguments::{ChainArguments, InverseArguments};
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
 use super::robot::{joint_positions, numbers, tooled_chain};
@@ -20,8 +20,7 @@ const MAX_SIZE: f64 = 1e6;
 const NOTHING: f64 = 1e-16;
 
 pub(super) fn run(arguments: &InverseArguments, output: &mut Output) -> Result<Exit, Failure> {
-    let InverseArguments { file, base, tip, tool, .. } = arguments;
-    let (chain, _) = tooled_chain(file, [base, tip], tool.as_deref(), output)?;
+    let (chain, _) = tooled_chain(&arguments.chain, output)?;
     let target = target(arguments)?;
     let mut search = Search::new().starts(arguments.starts).seed(arguments.seed);
     if let Some(q0) = &arguments.q0 {
@@ -138,7 +137,7 @@ impl Answer {
             starts: solution.starts,
             orientation_counts: arguments.orientation.is_some() || arguments.axis.is_some(),
             limits: chain.position_limits().map(|(lower, upper)| [lower, upper]).collect(),
-            again: again(arguments, &q.join(",")),
+            again: again(&arguments.chain, &q.join(",")),
         }
     }
 }
@@ -149,8 +148,8 @@ fn or_zero(number: f64) -> f64 {
 }
 
 /// The command that gives the pose at the joint positions `q` of the same chain.
-fn again(arguments: &InverseArguments, q: &str) -> String {
-    let InverseArguments { file, base, tip, tool, .. } = arguments;
+fn again(chain: &ChainArguments, q: &str) -> String {
+    let ChainArguments { file, base, tip, tool } = chain;
     let mut command = format!("kinstep robot fk {} --base {base} --tip {tip}", file.robot);
     if let Some(calibration) = &file.calibration {
         let _ = write!(command, " --calibration {}", calibration.display());

@@ -70,6 +70,11 @@ impl Arm {
         &self.name
     }
 
+    /// The machine that it is a part of, if one was named.
+    pub fn machine(&self) -> Option<&str> {
+        self.machine.as_deref()
+    }
+
     /// The chain it moves, mounted in the world.
     pub fn chain(&self) -> &Chain {
         &self.chain

@@ -3,7 +3,6 @@ use super::fleet::{Description, Fleet};
 use super::runtime::ArmRuntime;
 use super::{Noise, Plan, PlanStatus, PlannerBuilder};
 use crate::integrate::Multistep;
-use crate::task::Reference;
 use nalgebra::Vector6;
 
 /// Why and where a run stopped early.
@@ -140,14 +139,6 @@ impl Planner {
     /// If there is no arm `i`.
     pub fn arm(&self, i: usize) -> ArmState<'_> {
         self.fleet.field.arm(i)
-    }
-
-    /// Where the tip of arm `i` (in the order in which arms were added) shall be at the time `t` \[s\].
-    ///
-    /// # Panics
-    /// If there is no arm `i`.
-    pub fn reference(&self, i: usize, t: f64) -> Reference {
-        self.fleet.field.arms[i].arm.motion.at(t)
     }
 
     /// Goes to the next sample; does nothing once [finished](Self::is_finished).

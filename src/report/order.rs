@@ -3,6 +3,8 @@
 use std::fmt::Write;
 
 use super::{Table, short};
+#[cfg(feature = "cli")]
+use crate::study::Criteria;
 use crate::study::{Convergence, Mark, RowStudy, ScenarioStudy, Studied};
 
 /// The study of a scenario with what came of it.
@@ -133,7 +135,7 @@ fn fitted(seen: &Convergence) -> [String; 2] {
 
 #[cfg(feature = "cli")]
 impl OrderPage<'_> {
-    /// Returns the study as one JSON object: the gaps, and by row the orders seen (null where nothing was decided), the errors, the
+    /// Returns the study as one JSON object: the gaps, the criteria, and by row the orders seen (null where nothing was decided), the errors, the
     /// floor, and everything that led there.
     pub fn json(&self) -> serde_json::Value {
         let kind = match self.study.studied() {
@@ -141,10 +143,13 @@ impl OrderPage<'_> {
             Studied::Problem => "problem",
         };
         let rows: Vec<serde_json::Value> = self.rows.iter().map(row_json).collect();
+        let Criteria { tolerance, floor_margin } = self.study.criteria();
         serde_json::json!({
             "scenario": self.name,
             "kind": kind,
             "measure": self.study.measure().name(),
+            "tolerance": tolerance,
+            "floor_margin": floor_margin,
             "sigma": self.study.ladder().sigmas(),
             "formulas": rows,
         })

@@ -43,12 +43,12 @@ impl Scenario {
         self.builder(formula?).arms(arms).build().map_err(|e| self.refused(&e))
     }
 
-    /// Returns the arms with the paths that they should follow.
+    /// Returns the arms on their machines, with the paths that they should follow.
     ///
     /// # Errors
     /// As [`Scenario::planner`].
     pub fn arms(&self, folder: Option<&Path>) -> Result<Vec<Arm>, ScenarioError> {
-        self.build_arms(folder).into_iter().collect()
+        self.on_machines(self.build_arms(folder).into_iter().collect::<Result<_, _>>()?)
     }
 
     /// Returns the row that the scenario names, or the best general one, if it may be run.

@@ -66,7 +66,7 @@ fn staged(spec: &ArmSpec, index: usize, machine: &Machine, tip: &str) -> Result<
 #[cfg(test)]
 mod tests {
     use crate::scenario::ScenarioText;
-    use nalgebra::Matrix4;
+    use crate::trajectory::assert_tips_stand_where_the_chains_have_them;
 
     #[test]
     fn arms_of_one_machine_stand_on_it_together_with_their_tools() {
@@ -78,14 +78,6 @@ mod tests {
         }
         let stage = text.scenario().unwrap().stage(None).unwrap();
         assert_eq!((stage.machines.len(), stage.arms.len()), (1, 2));
-        let q: Vec<Vec<f64>> = stage.arms.iter().map(|arm| vec![0.2; arm.chain.dof()]).collect();
-        let machine = &stage.machines[0];
-        let poses = machine.link_poses(&stage.machine_positions(0, |arm| &q[arm]));
-        for (arm, q) in stage.arms.iter().zip(&q) {
-            let link = machine.robot.links().iter().position(|link| link.name == arm.chain.tip()).unwrap();
-            let tip = arm.chain.forward(q, &mut arm.chain.scratch()).pose();
-            let apart = poses[link].inverse() * tip;
-            assert!((apart.to_matrix() - Matrix4::identity()).norm() < 1e-12);
-        }
+        assert_tips_stand_where_the_chains_have_them(&stage, |_| 0.2);
     }
 }

@@ -123,6 +123,11 @@ impl ScenarioStudy {
         self.measure
     }
 
+    /// What is asked of errors before they count.
+    pub fn criteria(&self) -> Criteria {
+        self.criteria
+    }
+
     /// What the scenario holds.
     pub fn studied(&self) -> Studied {
         if self.problem.is_some() { Studied::Problem } else { Studied::Arms }

@@ -77,6 +77,12 @@ impl Export {
             let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
             machine.chars().map(|c| if is_plain(c) { c } else { '_' }).collect()
         };
+        let each = |ending: &str, format: &dyn Fn(String) -> Box<dyn TrajectoryFormat>| -> Vec<ExportFile> {
+            let of = |machine: &String| {
+                file(format!("{STEM}.{}.{ending}", plain(machine)), format(machine.clone()))
+            };
+            machines.iter().map(of).collect()
+        };
         match self {
             Self::Csv => {
                 let metadata = CsvMetadata { table: format!("{STEM}.csv") };
@@ -87,20 +93,8 @@ impl Export {
             #[cfg(feature = "parquet")]
             Self::Parquet => vec![file(format!("{STEM}.parquet"), Box::new(Parquet))],
             Self::Mcap => vec![file(format!("{STEM}.mcap"), Box::new(Mcap))],
-            Self::Ros2 => machines
-                .iter()
-                .map(|machine| {
-                    let format = Ros2Yaml { machine: machine.clone() };
-                    file(format!("{STEM}.{}.yaml", plain(machine)), Box::new(format))
-                })
-                .collect(),
-            Self::MoveIt => machines
-                .iter()
-                .map(|machine| {
-                    let format = MoveItYaml { machine: machine.clone() };
-                    file(format!("{STEM}.{}.moveit.yaml", plain(machine)), Box::new(format))
-                })
-                .collect(),
+            Self::Ros2 => each("yaml", &|machine| Box::new(Ros2Yaml { machine })),
+            Self::MoveIt => each("moveit.yaml", &|machine| Box::new(MoveItYaml { machine })),
         }
     }
 }

@@ -49,5 +49,7 @@ pub use inspect::{JointFigures, Met, TimeFigures};
 pub use npz::Npz;
 pub use read::{Source, TrajectoryReader};
 pub use ros2_yaml::{MoveItYaml, Ros2Yaml};
+#[cfg(test)]
+pub(crate) use stage::tests::assert_tips_stand_where_the_chains_have_them;
 pub use stage::{Machine, Stage, StagedArm};
 pub use trajectory::{ArmTrajectory, Trajectory};

@@ -1,5 +1,6 @@
 //! Trajectories out of files, whatever their format.
 
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -100,6 +101,12 @@ impl Trajectory {
 fn checked(trajectory: Trajectory) -> Result<Trajectory, Problem> {
     if trajectory.arms.iter().all(|arm| arm.joints.is_empty()) {
         return Err(Problem::new("no joint moves here: there is no column of joint positions"));
+    }
+    for arm in &trajectory.arms {
+        let mut names = HashSet::new();
+        if let Some(joint) = arm.joints.iter().find(|joint| !names.insert(joint.as_str())) {
+            return Err(Problem::new(format!("`{}` has joint `{joint}` twice", arm.name)));
+        }
     }
     if trajectory.samples() < 2 {
         let count = trajectory.samples();

@@ -35,26 +35,22 @@ pub struct MoveItYaml {
 
 impl TrajectoryFormat for Ros2Yaml {
     fn check(&self, recording: Recording<'_>) -> Result<(), Refusal> {
-        check_command(recording)?;
-        group(recording, &self.machine).map(|_| ())
+        check(recording, &self.machine)
     }
 
     fn write(&self, recording: Recording<'_>, out: &mut dyn Write) -> io::Result<()> {
-        let group = group(recording, &self.machine).map_err(io::Error::other)?;
-        write_comment(recording.trajectory, &group, out)?;
+        let group = begin(recording, &self.machine, out)?;
         write_joint_trajectory(recording.trajectory, &group, "", out)
     }
 }
 
 impl TrajectoryFormat for MoveItYaml {
     fn check(&self, recording: Recording<'_>) -> Result<(), Refusal> {
-        check_command(recording)?;
-        group(recording, &self.machine).map(|_| ())
+        check(recording, &self.machine)
     }
 
     fn write(&self, recording: Recording<'_>, out: &mut dyn Write) -> io::Result<()> {
-        let group = group(recording, &self.machine).map_err(io::Error::other)?;
-        write_comment(recording.trajectory, &group, out)?;
+        let group = begin(recording, &self.machine, out)?;
         let model = group.machine.map_or(group.name, |machine| machine.robot.name());
         writeln!(out, "model_id: {}\ntrajectory:\n- joint_trajectory:", yaml::quoted(model))?;
         write_joint_trajectory(recording.trajectory, &group, "    ", out)?;
@@ -66,6 +62,23 @@ impl TrajectoryFormat for MoveItYaml {
         let _ = write!(text, "\n  is_diff: {}", group.machine.is_none());
         writeln!(out, "{text}")
     }
+}
+
+/// What the messages of both formats are refused for.
+fn check(recording: Recording<'_>, machine: &str) -> Result<(), Refusal> {
+    check_command(recording)?;
+    group(recording, machine).map(|_| ())
+}
+
+/// Begins the file of a machine's message with a comment, and returns the machine's joints. `rclpy` and `ros2` skip comments.
+fn begin<'a>(recording: Recording<'a>, machine: &str, out: &mut dyn Write) -> io::Result<Group<'a>> {
+    let group = group(recording, machine).map_err(io::Error::other)?;
+    writeln!(out, "{MACHINE}{}", group.name.escape_debug())?;
+    let entries = recording.trajectory.about.iter().flat_map(About::entries);
+    for (key, value) in entries {
+        writeln!(out, "# {key}: {}", value.escape_debug())?;
+    }
+    Ok(group)
 }
 
 fn group<'a>(recording: Recording<'a>, name: &str) -> Result<Group<'a>, Refusal> {
@@ -86,13 +99,6 @@ pub(super) fn start_of<'a>(group: &Group<'a>) -> Vec<(&'a str, f64)> {
     let resting = group.machine.into_iter().flat_map(rest);
     let resting = resting.filter(|(name, _)| group.columns.iter().all(|column| column.joint != *name));
     moved.chain(resting).collect()
-}
-
-/// What made the trajectory; `rclpy` and `ros2` skip comments.
-fn write_comment(trajectory: &Trajectory, group: &Group<'_>, out: &mut dyn Write) -> io::Result<()> {
-    writeln!(out, "{MACHINE}{}", group.name.escape_debug())?;
-    let entries = trajectory.about.iter().flat_map(About::entries);
-    entries.into_iter().try_for_each(|(key, value)| writeln!(out, "# {key}: {}", value.escape_debug()))
 }
 
 fn write_joint_trajectory(

@@ -126,10 +126,28 @@ impl Stage {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::robot::embedded;
     use nalgebra::{Matrix4, Vector3};
+
+    /// Asserts, for a stage of one machine, that the links at the arms' tips are where their chains say, with joint `i` of
+    /// every chain at `position(i)`.
+    pub(crate) fn assert_tips_stand_where_the_chains_have_them(
+        stage: &Stage,
+        position: impl Fn(usize) -> f64,
+    ) {
+        let positions = |arm: &StagedArm| -> Vec<f64> { (0..arm.chain.dof()).map(&position).collect() };
+        let q: Vec<Vec<f64>> = stage.arms.iter().map(positions).collect();
+        let machine = &stage.machines[0];
+        let poses = machine.link_poses(&stage.machine_positions(0, |arm| &q[arm]));
+        for (arm, q) in stage.arms.iter().zip(&q) {
+            let link = machine.robot.links().iter().position(|link| link.name == arm.chain.tip()).unwrap();
+            let tip = arm.chain.forward(q, &mut arm.chain.scratch()).pose();
+            let apart = poses[link].inverse() * tip;
+            assert!((apart.to_matrix() - Matrix4::identity()).norm() < 1e-12);
+        }
+    }
 
     #[test]
     fn links_of_a_stage_stand_where_the_chains_have_their_tips() {
@@ -145,18 +163,6 @@ mod tests {
             })
             .collect();
         let stage = Stage { machines: vec![machine], arms };
-        let q: Vec<Vec<f64>> = stage
-            .arms
-            .iter()
-            .map(|arm| (0..arm.chain.dof()).map(|i| 0.3 - 0.1 * i as f64).collect())
-            .collect();
-        let machine = &stage.machines[0];
-        let poses = machine.link_poses(&stage.machine_positions(0, |arm| &q[arm]));
-        for (arm, q) in stage.arms.iter().zip(&q) {
-            let link = machine.robot.links().iter().position(|link| link.name == arm.chain.tip()).unwrap();
-            let tip = arm.chain.forward(q, &mut arm.chain.scratch()).pose();
-            let apart = poses[link].inverse() * tip;
-            assert!((apart.to_matrix() - Matrix4::identity()).norm() < 1e-12);
-        }
+        assert_tips_stand_where_the_chains_have_them(&stage, |i| 0.3 - 0.1 * i as f64);
     }
 }

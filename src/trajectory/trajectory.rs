@@ -3,7 +3,7 @@
 use nalgebra::Vector6;
 
 use super::About;
-use crate::planner::{ArmPlan, Plan};
+use crate::planner::{Arm, ArmPlan, Plan};
 
 /// What the joints of one arm do.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,20 +39,25 @@ impl ArmTrajectory {
     /// Returns the same with the joints in that order, where they are the same joints; unchanged where they are not.
     #[must_use]
     pub fn in_order(&self, joints: &[&str]) -> Self {
+        let ordered = self.with_joints(joints);
+        let is_same = [ordered.joints.len(), joints.len()] == [self.joints.len(); 2];
+        if is_same { ordered } else { self.clone() }
+    }
+
+    /// Returns the same with those of its joints that are named, in the order of the names.
+    #[must_use]
+    pub fn with_joints(&self, joints: &[&str]) -> Self {
         let place = |name: &&str| self.joints.iter().position(|own| own == name);
-        let places: Option<Vec<usize>> = joints.iter().map(place).collect();
-        let Some(places) = places.filter(|places| places.len() == self.joints.len() && !places.is_empty())
-        else {
-            return self.clone();
-        };
-        let ordered = |values: &[f64]| -> Vec<f64> {
-            values.chunks_exact(places.len()).flat_map(|row| places.iter().map(|&place| row[place])).collect()
+        let places: Vec<usize> = joints.iter().filter_map(place).collect();
+        let taken = |values: &[f64]| -> Vec<f64> {
+            let rows = values.chunks_exact(self.joints.len().max(1));
+            rows.flat_map(|row| places.iter().map(|&place| row[place])).collect()
         };
         Self {
             name: self.name.clone(),
-            joints: joints.iter().map(|&name| name.to_owned()).collect(),
-            positions: ordered(&self.positions),
-            velocities: ordered(&self.velocities),
+            joints: places.iter().map(|&place| self.joints[place].clone()).collect(),
+            positions: taken(&self.positions),
+            velocities: taken(&self.velocities),
             errors: self.errors.clone(),
         }
     }
@@ -61,6 +66,17 @@ impl ArmTrajectory {
     pub fn velocity(&self, n: usize) -> Option<&[f64]> {
         let joints = self.joints.len();
         self.velocities.get(n * joints..(n + 1) * joints).filter(|velocity| !velocity.is_empty())
+    }
+
+    /// The [task errors](Arm::task_error) (linear \[m\]; angular \[rad\]) of the samples, at `times` \[s\], of an arm with the
+    /// same joints.
+    ///
+    /// # Panics
+    /// If there are fewer samples than times, or another number of joints.
+    pub fn task_errors(&self, arm: &Arm, times: &[f64]) -> Vec<Vector6<f64>> {
+        let mut scratch = arm.chain().scratch();
+        let at = |(n, t): (usize, &f64)| arm.task_error(*t, self.position(n), &mut scratch);
+        times.iter().enumerate().map(at).collect()
     }
 }
 

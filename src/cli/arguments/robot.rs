@@ -22,13 +22,13 @@ Examples:
     Check(RobotFile),
     /// Pose of a tip in a base
     #[command(after_help = "Examples:\n  kinstep robot fk planar4 --base base --tip tip --q=-0.1,2,0,pi/4")]
-    Fk(ChainArguments),
+    Fk(KinematicsArguments),
     /// Pose of a tip in a base, and the geometric Jacobian: twist (linear, angular) of the tip at its origin, in
     /// the base's axes, by joint
     #[command(
         after_help = "Example:\n  kinstep robot jacobian planar4 --base base --tip tip --q 0,pi/2,0,0 --json"
     )]
-    Jacobian(ChainArguments),
+    Jacobian(KinematicsArguments),
     /// Joint positions that bring a tip to a pose, a position, or a position with a direction of its z axis, within the
     /// limits; exit 5, and the nearest place, if none are found
     #[command(after_help = "\
@@ -118,27 +118,25 @@ pub(in crate::cli) struct ChainArguments {
     #[arg(long, value_name = "LINK")]
     pub(in crate::cli) tip: String,
 
-    /// Joint positions in path order in rad or m, separated by commas; expressions in pi are read
-    #[arg(long, value_name = "Q,...", allow_hyphen_values = true)]
-    pub(in crate::cli) q: Option<String>,
-
     /// Pose of a tool in the tip, "x y z roll pitch yaw" in m and rad: the chain then ends there
     #[arg(long, value_name = "POSE", allow_hyphen_values = true)]
     pub(in crate::cli) tool: Option<String>,
 }
 
 #[derive(Debug, Args)]
+pub(in crate::cli) struct KinematicsArguments {
+    #[command(flatten)]
+    pub(in crate::cli) chain: ChainArguments,
+
+    /// Joint positions in path order in rad or m, separated by commas; expressions in pi are read
+    #[arg(long, value_name = "Q,...", allow_hyphen_values = true)]
+    pub(in crate::cli) q: Option<String>,
+}
+
+#[derive(Debug, Args)]
 pub(in crate::cli) struct InverseArguments {
     #[command(flatten)]
-    pub(in crate::cli) file: RobotFile,
-
-    /// Link at which the chain begins
-    #[arg(long, value_name = "LINK")]
-    pub(in crate::cli) base: String,
-
-    /// Link at which the chain ends
-    #[arg(long, value_name = "LINK")]
-    pub(in crate::cli) tip: String,
+    pub(in crate::cli) chain: ChainArguments,
 
     /// Where the tip should be in the base's axes in m; of two numbers, x and y, z is free
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
@@ -155,10 +153,6 @@ pub(in crate::cli) struct InverseArguments {
     /// Joint positions that the answer should be near, in path order in rad or m
     #[arg(long, value_name = "Q,...", allow_hyphen_values = true)]
     pub(in crate::cli) q0: Option<String>,
-
-    /// Pose of a tool in the tip, "x y z roll pitch yaw" in m and rad: the chain then ends there
-    #[arg(long, value_name = "POSE", allow_hyphen_values = true)]
-    pub(in crate::cli) tool: Option<String>,
 
     /// Starting places to try at most
     #[arg(long, default_value_t = 100)]

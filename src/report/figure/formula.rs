@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use nalgebra::Complex;
+
 use super::axis::{Axis, Scale};
 use super::figure::{Figure, Mark, Shape};
 use crate::formula::{Analysis, FrequencyResponse, StabilityRegion};
@@ -167,7 +169,6 @@ pub fn radius_figure(rows: &[(&str, &Analysis)]) -> Figure {
 /// Returns where x' = lambda x is integrated stably, in the plane of sigma lambda.
 pub fn region_figure(id: &str, analysis: &Analysis) -> Figure {
     let StabilityRegion { real, imaginary, stable, boundary } = analysis.stability_region(260);
-    let count = boundary.len().saturating_sub(1).max(1) as f64;
     let strips = strips(real, imaginary, &stable);
     // No name in the legend where nothing is stable.
     let name = if strips.is_empty() { "" } else { "stable" }.to_owned();
@@ -175,17 +176,34 @@ pub fn region_figure(id: &str, analysis: &Analysis) -> Figure {
         Mark::Region { name, strips, style: 5 },
         Mark::Guide { points: vec![(0.0, imaginary.0), (0.0, imaginary.1)] },
         Mark::Guide { points: vec![(real.0, 0.0), (real.1, 0.0)] },
-        Mark::Line {
-            name: "boundary locus".to_owned(),
-            parameter: (0..boundary.len()).map(|k| TAU * k as f64 / count).collect(),
-            points: boundary.iter().map(|mu| (mu.re, mu.im)).collect(),
-            style: 0,
-        },
+        locus("boundary locus", &boundary, 0),
     ];
     let split = if analysis.is_split() { " (feedforward pair)" } else { "" };
+    let title = format!("{id}: stability on x' = \u{3bb}x{split}");
+    stability_plane(format!("{id}-region"), title, [real, imaginary], marks)
+}
+
+/// The boundary locus, by the angle of the root that lies on the unit circle.
+fn locus(name: &str, boundary: &[Complex<f64>], style: usize) -> Mark {
+    let count = boundary.len().saturating_sub(1).max(1) as f64;
+    Mark::Line {
+        name: name.to_owned(),
+        parameter: (0..boundary.len()).map(|k| TAU * k as f64 / count).collect(),
+        points: boundary.iter().map(|mu| (mu.re, mu.im)).collect(),
+        style,
+    }
+}
+
+/// A figure in the plane of sigma lambda.
+fn stability_plane(
+    name: String,
+    title: String,
+    [real, imaginary]: [(f64, f64); 2],
+    marks: Vec<Mark>,
+) -> Figure {
     Figure {
-        name: format!("{id}-region"),
-        title: format!("{id}: stability on x' = \u{3bb}x{split}"),
+        name,
+        title,
         x: Axis::new("Re \u{3c3}\u{3bb}", "re", Scale::Linear, real),
         y: Axis::new("Im \u{3c3}\u{3bb}", "im", Scale::Linear, imaginary),
         is_isometric: true,
@@ -222,26 +240,12 @@ pub fn boundary_figure(rows: &[(&str, &Analysis)]) -> Figure {
         let StabilityRegion { real: across, imaginary: along, boundary, .. } = analysis.stability_region(40);
         real = (real.0.min(across.0), real.1.max(across.1));
         imaginary = (imaginary.0.min(along.0), imaginary.1.max(along.1));
-        let count = boundary.len().saturating_sub(1).max(1) as f64;
-        marks.push(Mark::Line {
-            name: (*id).to_owned(),
-            parameter: (0..boundary.len()).map(|k| TAU * k as f64 / count).collect(),
-            points: boundary.iter().map(|mu| (mu.re, mu.im)).collect(),
-            style,
-        });
+        marks.push(locus(id, &boundary, style));
     }
     let guides = [vec![(0.0, imaginary.0), (0.0, imaginary.1)], vec![(real.0, 0.0), (real.1, 0.0)]];
-    Figure {
-        name: format!("{}-boundary", stem(rows)),
-        title: title_of(rows, "boundary loci on x' = \u{3bb}x"),
-        x: Axis::new("Re \u{3c3}\u{3bb}", "re", Scale::Linear, real),
-        y: Axis::new("Im \u{3c3}\u{3bb}", "im", Scale::Linear, imaginary),
-        is_isometric: true,
-        caption: String::new(),
-        size: None,
-        parameter: Some("theta".to_owned()),
-        marks: guides.map(|points| Mark::Guide { points }).into_iter().chain(marks).collect(),
-    }
+    let marks = guides.map(|points| Mark::Guide { points }).into_iter().chain(marks).collect();
+    let title = title_of(rows, "boundary loci on x' = \u{3bb}x");
+    stability_plane(format!("{}-boundary", stem(rows)), title, [real, imaginary], marks)
 }
 
 /// What becomes of one kind of noise.

@@ -28,6 +28,9 @@ impl Journal {
             return Ok(Some(Self { path, file, done: 0 }));
         }
         let Some((done, length)) = whole_lines(&path, heading)? else { return Ok(None) };
+        if length == 0 {
+            return Self::open(table, heading, true);
+        }
         let mut file = OpenOptions::new().write(true).open(&path)?;
         // What was cut off in the middle of a line is done again.
         file.set_len(length)?;
@@ -56,18 +59,21 @@ impl Journal {
     }
 }
 
-/// The number of whole lines after the first and the bytes up to their end; nothing for another first line.
+/// The number of whole lines after the first and the bytes up to their end, none where the first was cut off; nothing for
+/// another first line.
 fn whole_lines(path: &Path, heading: &str) -> io::Result<Option<(usize, u64)>> {
     let mut reader = BufReader::new(File::open(path)?);
-    let (mut line, mut count, mut length) = (Vec::new(), 0, 0);
+    let first = format!("{heading}\n").into_bytes();
+    let (mut line, mut count, mut length): (Vec<u8>, usize, u64) = (Vec::new(), 0, 0);
     loop {
         line.clear();
         let read = reader.read_until(b'\n', &mut line)?;
-        if read == 0 || line.last() != Some(&b'\n') {
-            return Ok((count > 0).then(|| (count - 1, length)));
-        }
-        if count == 0 && line != format!("{heading}\n").into_bytes() {
+        let is_whole = line.last() == Some(&b'\n');
+        if count == 0 && !(line == first || !is_whole && first.starts_with(&line)) {
             return Ok(None);
+        }
+        if read == 0 || !is_whole {
+            return Ok(Some((count.saturating_sub(1), length)));
         }
         count += 1;
         length += read as u64;
