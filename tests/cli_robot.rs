@@ -295,6 +295,34 @@ arm      turn    revolute                 0.5    1.5    1
     assert_eq!((&card["chains"][0]["base"], &card["chains"][0]["dof"]), (&json!("base"), &json!(2)));
 }
 
+/// Three joints of which each follows the one before it.
+const FOLLOWING: &str = r#"<robot name="mc"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+<joint name="j1" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+  <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+<joint name="j2" type="revolute"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>
+  <limit lower="-2" upper="2" effort="1" velocity="1"/><mimic joint="j1"/></joint>
+<joint name="j3" type="revolute"><parent link="c"/><child link="d"/><axis xyz="0 0 1"/>
+  <limit lower="-2" upper="2" effort="1" velocity="1"/><mimic joint="j2"/></joint></robot>"#;
+
+#[test]
+fn a_joint_stands_still_with_the_locked_one_that_it_follows() {
+    let desk = Desk::new(&[("mc.urdf", FOLLOWING), ("mine.toml", "[joint.j2]\nreversed = true\n")]);
+    let fk = |extra: &[&str]| {
+        let chain = ["robot", "fk", "mc.urdf", "--base", "c", "--tip", "d", "--json"];
+        desk.run(&[&chain, extra].concat())
+    };
+    let held = fk(&["--lock", "j2=0.4"]).expect(0);
+    let pose = held.json();
+    assert_eq!(pose["joints"], json!([]));
+    assert!((pose["rotation"][1][0].as_f64().unwrap() - 0.4_f64.sin()).abs() < 1e-15, "{pose}");
+    assert_eq!(held.err, "note: joint `j2` is locked and follows `j1` no longer; `j1` moves without it\n");
+    assert_eq!(fk(&["--lock", "j1=0.4"]).expect(0).err, "", "a joint that follows none leaves none alone");
+    fk(&["--lock", "j2=0.4", "--q", "0.1"]).expect(2);
+    // A correction of the one in the middle reaches the last too.
+    let reversed = fk(&["--calibration", "mine.toml", "--q", "0.3"]).expect(0).json();
+    assert!((reversed["rotation"][1][0].as_f64().unwrap() + 0.3_f64.sin()).abs() < 1e-15, "{reversed}");
+}
+
 #[test]
 fn what_was_ignored_is_said_when_asked() {
     let desk = Desk::new(&[("mobile.urdf", MOBILE)]);

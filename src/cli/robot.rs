@@ -12,7 +12,7 @@ use super::robot_show::RobotCard;
 use super::{formula_plot, robot_export, robot_ik};
 use crate::report::Table;
 use crate::report::figure::robot_figures;
-use crate::robot::{Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded};
+use crate::robot::{Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded, quote};
 use crate::scenario::{RobotSource, calibrated, evaluate, suggestion, tool_name};
 
 pub(super) fn run(command: &RobotCommand, output: &mut Output) -> Result<Exit, Failure> {
@@ -38,11 +38,11 @@ pub(super) fn read(file: &RobotFile, output: &Output) -> Result<Robot, Failure> 
     if output.is_verbose() {
         robot.diagnostics().iter().for_each(|found| output.remark(&format!("{}:{found}", source.label())));
     }
-    edited(robot, file)
+    edited(robot, file, output)
 }
 
 /// Returns the robot with the calibration and the locks that were asked for.
-fn edited(robot: Robot, file: &RobotFile) -> Result<Robot, Failure> {
+fn edited(robot: Robot, file: &RobotFile, output: &Output) -> Result<Robot, Failure> {
     let mut robot = robot;
     if let Some(calibration) = &file.calibration {
         robot = calibrated(&robot, calibration)?;
@@ -54,7 +54,15 @@ fn edited(robot: Robot, file: &RobotFile) -> Result<Robot, Failure> {
         let values = pose_numbers("--lock", lock, values)?;
         let refuse =
             |e: crate::robot::LockError| Failure::new(Exit::Robot, e.to_string()).in_file(&file.robot);
-        robot = robot.with_locked(joint.trim(), &values).map_err(refuse)?;
+        let joint = joint.trim();
+        let locked = robot.with_locked(joint, &values).map_err(refuse)?;
+        if let Some(left) = robot.joint_followed_by(joint) {
+            let (joint, left) = (quote(joint), quote(&left.name));
+            output.aside(&format!(
+                "note: joint {joint} is locked and follows {left} no longer; {left} moves without it"
+            ));
+        }
+        robot = locked;
     }
     Ok(robot)
 }
@@ -191,7 +199,7 @@ fn check(file: &RobotFile, output: &mut Output) -> Result<Exit, Failure> {
     let source = RobotSource::find(&file.robot, None)?;
     let (found, joints, links) = match source.read(&options(file)) {
         Ok(robot) => {
-            edited(robot.clone(), file)?;
+            edited(robot.clone(), file, output)?;
             let joints = robot.joints().iter().map(|joint| joint.name.clone()).collect();
             (robot.diagnostics().to_vec(), joints, robot.links().len())
         }

@@ -200,6 +200,7 @@ impl Robot {
             self.check_correction(index, correction, line)?;
             robot.correct(index, correction);
         }
+        robot.fold_followers();
         Ok(robot)
     }
 
@@ -251,10 +252,10 @@ impl Robot {
         joint.axis *= sign;
         let ends = [joint.limits.lower, joint.limits.upper].map(|end| sign * (end - zero));
         (joint.limits.lower, joint.limits.upper) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-        for mimic in self.joints.iter_mut().filter_map(|joint| joint.mimic.as_mut()) {
-            if mimic.driver == index {
-                mimic.offset += mimic.multiplier * zero;
-                mimic.multiplier *= sign;
+        for follows in self.joints.iter_mut().filter_map(|joint| joint.follows.as_mut()) {
+            if follows.driver == index {
+                follows.offset += follows.multiplier * zero;
+                follows.multiplier *= sign;
             }
         }
     }

@@ -85,7 +85,7 @@ impl Robot {
             let _ = writeln!(text, "    <axis xyz=\"{}\"/>", numbers(joint.axis.as_slice()));
         }
         write_limits(text, joint);
-        if let Some(mimic) = joint.mimic {
+        if let Some(mimic) = joint.follows {
             let driver = escaped(&self.joints[mimic.driver].name);
             let (multiplier, offset) = (number(mimic.multiplier), number(mimic.offset));
             let _ = writeln!(

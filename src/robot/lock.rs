@@ -85,7 +85,8 @@ fn wanted(kind: JointKind) -> &'static str {
 
 impl Robot {
     /// Returns the robot with a joint held still: chains pass through it as through a fixed joint, and joints that
-    /// follow it stand still with it.
+    /// follow it, at first hand or through others, stand still with it. A joint that follows another follows it no longer
+    /// once it is held: the other moves on without it.
     ///
     /// A joint with one degree of freedom is held at one position \[rad\] or \[m\], within its limits. A floating, planar
     /// or spherical joint is held at the pose of its child, `x y z roll pitch yaw` \[m, rad\] as in URDF, after its
@@ -119,21 +120,25 @@ impl Robot {
         Ok(robot)
     }
 
-    /// Fixes the joints that follow a joint which stands at `position`.
+    /// Fixes the joints that follow a joint which stands at `position`, at first hand or through others.
     fn still_followers(&mut self, driver: usize, position: f64) -> Result<(), LockError> {
-        let name = self.joints[driver].name.clone();
-        for joint in &mut self.joints {
-            let Some(mimic) = joint.mimic.filter(|mimic| mimic.driver == driver) else { continue };
-            let own = mimic.multiplier * position + mimic.offset;
-            let Limits { lower, upper, .. } = joint.limits;
-            // The follower's position carries the rounding of its ratio.
-            let slack = 1e-12 * own.abs().max(1.0);
-            if !(lower - slack <= own && own <= upper + slack) {
-                let (joint, follower) = (name, joint.name.clone());
-                return Err(LockError::Follower { joint, position, follower, value: own, lower, upper });
+        let followers = self.followers();
+        let mut standing = vec![(driver, position)];
+        while let Some((followed, at)) = standing.pop() {
+            for &index in &followers[followed] {
+                let joint = &self.joints[index];
+                let own = joint.follows.map_or(0.0, |follows| follows.multiplier * at + follows.offset);
+                let Limits { lower, upper, .. } = joint.limits;
+                // The follower's position carries the rounding of its ratio.
+                let slack = 1e-12 * own.abs().max(1.0);
+                if !(lower - slack <= own && own <= upper + slack) {
+                    let (joint, follower) = (self.joints[driver].name.clone(), joint.name.clone());
+                    return Err(LockError::Follower { joint, position, follower, value: own, lower, upper });
+                }
+                let held = displacement(joint.kind, joint.axis, own);
+                fix(&mut self.joints[index], &held);
+                standing.push((index, own));
             }
-            let held = displacement(joint.kind, joint.axis, own);
-            fix(joint, &held);
         }
         Ok(())
     }
@@ -195,5 +200,5 @@ fn fix(joint: &mut Joint, held: &IsometryMatrix3<f64>) {
     joint.kind = JointKind::Fixed;
     joint.axis = Vector3::x();
     joint.limits = Limits::UNLIMITED;
-    joint.mimic = None;
+    (joint.mimic, joint.follows) = (None, None);
 }

@@ -14,6 +14,7 @@ pub mod embedded;
 mod export;
 mod file;
 mod fold;
+mod follow;
 mod kinematics;
 mod lock;
 mod model;
@@ -44,4 +45,5 @@ pub use tree::{TreeRow, TreeRows};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, ReadError, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 
+pub(crate) use names::quote;
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};

@@ -62,7 +62,7 @@ pub(super) fn short_list(names: &[impl AsRef<str>], conjunction: &str) -> String
 }
 
 /// Returns a name between backticks, control characters escaped, cut after sixty characters.
-pub(super) fn quote(name: &str) -> String {
+pub(crate) fn quote(name: &str) -> String {
     let mut quoted = String::from("`");
     for (count, c) in name.chars().enumerate() {
         if count == SHOWN {

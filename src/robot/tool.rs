@@ -69,7 +69,7 @@ impl Robot {
         }
         for joint in &mut self.joints {
             (joint.parent, joint.child) = (moved(joint.parent, place), moved(joint.child, place));
-            if let Some(mimic) = &mut joint.mimic {
+            for mimic in joint.mimic.iter_mut().chain(&mut joint.follows) {
                 mimic.driver = moved(mimic.driver, joint_place);
             }
         }
@@ -84,6 +84,7 @@ impl Robot {
             axis: Vector3::x(),
             limits: Limits::UNLIMITED,
             mimic: None,
+            follows: None,
             defect: None,
             angles: None,
         };

@@ -276,6 +276,7 @@ impl Serial {
             axis: if row.kind == JointKind::Fixed { Vector3::x() } else { Vector3::z() },
             limits,
             mimic: None,
+            follows: None,
             defect: None,
             angles,
         });
