@@ -295,6 +295,90 @@ arm      turn    revolute                 0.5    1.5    1
     assert_eq!((&card["chains"][0]["base"], &card["chains"][0]["dof"]), (&json!("base"), &json!(2)));
 }
 
+/// The commands that a text suggests.
+fn suggested(text: &str) -> Vec<String> {
+    let command = |line: &str| line.strip_prefix("  kinstep ").map(|rest| format!("kinstep {rest}"));
+    text.lines().filter_map(command).collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn suggested_commands_do_what_was_asked_before() {
+    // Odd names, a joint without a limit, and one that stands still only because it is asked to.
+    let urdf = MOBILE
+        .replace("base", "the base")
+        .replace("left", "it's left")
+        .replace("name=\"float\"", "name=\"the float\"")
+        .replace("<limit lower=\"0.5\" upper=\"1.5\" effort=\"1\" velocity=\"1\"/>", "");
+    let desk = Desk::new(&[("my robot.urdf", &urdf), ("my own.toml", "[joint.turn]\nxyz = [0, 0, 0.5]\n")]);
+    let asked = [
+        "my robot.urdf",
+        "--assume-unlimited",
+        "--lock",
+        "the float=0 0 1 0 0 0",
+        "--calibration",
+        "my own.toml",
+    ];
+    let text = desk.run(&[&["robot", "show"][..], &asked].concat()).expect(0).out;
+    let [command] = &suggested(&text)[..] else { panic!("one command: {text}") };
+    assert!(command.contains("--base world") && command.contains(r"--tip 'it'\''s left'"), "{command}");
+    desk.shell(command).expect(0);
+    // Without what was asked for, the chain is another one: nothing passes the joint without a limit.
+    desk.shell(&command.replace("--assume-unlimited", "")).expect(3);
+    desk.shell(&command.replace("--lock 'the float=0 0 1 0 0 0'", "")).expect(3);
+
+    let chain =
+        ["--base", "world", "--tip", "it's left", "--tool", "0 0 0.1 0 0 0", "--position=0.8,0.603,1.6"];
+    let answer = desk.run(&[&["robot", "ik"][..], &asked, &chain].concat()).expect(0).out;
+    let [command] = &suggested(&answer)[..] else { panic!("one command: {answer}") };
+    let pose = desk.shell(&format!("{command} --json")).expect(0).json();
+    for (found, wanted) in pose["position"].as_array().unwrap().iter().zip([0.8, 0.603, 1.6]) {
+        assert!((found.as_f64().unwrap() - wanted).abs() < 1e-6, "{pose}");
+    }
+
+    let free = desk.run(&["robot", "show", "my robot.urdf", "--assume-unlimited"]).expect(0).out;
+    assert!(free.contains("unless it is held still: --lock 'the float=0'"), "{free}");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_to_try_after_a_plan_can_be_typed_as_it_stands() {
+    let desk = Desk::new(&[]);
+    std::fs::create_dir(desk.path("sp ace")).unwrap();
+    std::fs::write(desk.path("sp ace/x.toml"), cli::SMALL).unwrap();
+    let text =
+        desk.run(&["plan", "sp ace/x.toml", "--set", "law.gain=8", "--out", "my results"]).expect(0).out;
+    let commands = suggested(&text);
+    assert!(
+        commands
+            .iter()
+            .any(|command| command.starts_with("kinstep plan 'sp ace/x.toml' --set law.gain=8 --set")),
+        "{text}"
+    );
+    for command in commands {
+        desk.shell(&command).expect(0);
+    }
+}
+
+#[test]
+fn a_joint_without_limits_moves_when_a_scenario_asks_for_it() {
+    let urdf = r#"<robot name="loose"><link name="base"/><link name="a"/><link name="tip"/>
+<joint name="j1" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint>
+<joint name="j2" type="continuous"><parent link="a"/><child link="tip"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/></joint></robot>"#;
+    let scenario = cli::SMALL.replace("planar4", "loose.urdf").replace("0.3, 0.3, 0.3]", "0.3]");
+    let scenario = scenario.replace("tip = \"tip\"", "tip = \"tip\"\ntool = { xyz = [1, 0, 0] }");
+    let desk = Desk::new(&[("loose.urdf", urdf), ("s.toml", &scenario)]);
+    let refused = desk.run(&["plan", "s.toml"]).expect(3).err;
+    assert!(
+        refused.contains("no `<limit>`") && refused.contains("in a scenario `assume_unlimited = true`"),
+        "{refused}"
+    );
+    desk.run(&["plan", "s.toml", "--set", "arm.left.assume_unlimited=true", "--out", "results"]).expect(0);
+    let written = std::fs::read_to_string(desk.path("results/scenario.toml")).unwrap();
+    assert!(written.contains("assume_unlimited = true"), "{written}");
+    desk.run(&["plan", "results/scenario.toml"]).expect(0);
+}
+
 /// Three joints of which each follows the one before it.
 const FOLLOWING: &str = r#"<robot name="mc"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
 <joint name="j1" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>

@@ -28,6 +28,7 @@ mod robot_export;
 mod robot_ik;
 mod robot_show;
 mod schema;
+mod shell;
 mod sweep;
 
 use std::ffi::OsString;

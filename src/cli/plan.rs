@@ -8,6 +8,7 @@ use super::failure::{Exit, Failure};
 use super::output::Output;
 use super::progress::Progress;
 use super::results::{Results, Story};
+use super::shell::{option, quoted};
 use crate::math::figure;
 use crate::planner::{Plan, PlanStatus, Planner};
 use crate::report::{PlanFormat, PlanJson, PlanText, Suggestion, plan_details, suggestions};
@@ -174,7 +175,9 @@ fn exit(plan: &Plan) -> Exit {
 
 /// Where the files are, and what to try next.
 fn closing(arguments: &PlanArguments, names: &[String], suggested: Vec<Suggestion>) -> String {
-    let name = arguments.scenario.as_ref().map_or_else(String::new, |file| format!(" {}", file.display()));
+    let name = arguments.scenario.as_ref().map(|file| quoted(&file.display().to_string()));
+    let set = arguments.set.iter().map(|set| option("--set", set)).collect::<String>();
+    let name = name.map_or_else(String::new, |name| format!(" {name}")) + &set;
     let mut next = Vec::new();
     let mut written = String::new();
     match &arguments.written.out {
@@ -190,7 +193,10 @@ fn closing(arguments: &PlanArguments, names: &[String], suggested: Vec<Suggestio
     let line = |next: Suggestion| [format!("kinstep plan{name} {}", next.arguments), next.reason];
     let mut lines: Vec<[String; 2]> = next.into_iter().map(line).collect();
     if let Some(folder) = arguments.written.out.as_ref().filter(|_| !arguments.figures) {
-        lines.push([format!("kinstep plot {}", folder.display()), "its pictures".to_owned()]);
+        lines.push([
+            format!("kinstep plot {}", quoted(&folder.display().to_string())),
+            "its pictures".to_owned(),
+        ]);
     }
     if arguments.scenario.is_none() {
         lines.push(["kinstep schema scenario", "every key of a scenario of your own"].map(str::to_owned));

@@ -9,6 +9,7 @@ use super::arguments::{ChainArguments, RobotCommand, RobotFile, RobotShow};
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
 use super::robot_show::RobotCard;
+use super::shell::{option, quoted};
 use super::{formula_plot, robot_export, robot_ik};
 use crate::report::Table;
 use crate::report::figure::robot_figures;
@@ -29,6 +30,22 @@ pub(super) fn run(command: &RobotCommand, output: &mut Output) -> Result<Exit, F
 
 fn options(file: &RobotFile) -> UrdfOptions {
     UrdfOptions { assume_unlimited: file.assume_unlimited, strict: file.strict, ..UrdfOptions::default() }
+}
+
+/// Returns the robot and what was asked to be done to it, as words of a command.
+pub(super) fn robot_words(file: &RobotFile) -> String {
+    let mut words = quoted(&file.robot);
+    for (_, flag) in [(file.assume_unlimited, "--assume-unlimited"), (file.strict, "--strict")]
+        .iter()
+        .filter(|(set, _)| *set)
+    {
+        words += &format!(" {flag}");
+    }
+    if let Some(calibration) = &file.calibration {
+        words += &option("--calibration", &calibration.display().to_string());
+    }
+    file.lock.iter().for_each(|lock| words += &option("--lock", lock));
+    words
 }
 
 /// Reads a robot, calibrates it and holds its locked joints; with `--verbose`, what was found in the file is said.
@@ -78,7 +95,7 @@ fn show(arguments: &RobotShow, output: &mut Output) -> Result<Exit, Failure> {
     let robot = read(&arguments.file, output)?;
     let positions = all_positions(arguments.q.as_deref(), &robot)?;
     let Some(path) = &arguments.plot else {
-        return output.show(&RobotCard::new(&robot, &arguments.file.robot)).map(|()| Exit::Done);
+        return output.show(&RobotCard::new(&robot, robot_words(&arguments.file))).map(|()| Exit::Done);
     };
     let figures = robot_figures(&robot, &positions);
     let written = formula_plot::draw(path, arguments.force, robot.name(), &figures)?;

@@ -8,7 +8,8 @@ use serde::Serialize;
 use super::arguments::InverseArguments;
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
-use super::robot::{joint_positions, numbers, tooled_chain};
+use super::robot::{joint_positions, numbers, robot_words, tooled_chain};
+use super::shell::option;
 use crate::inverse::{Search, Solution, Target};
 use crate::report::{Table, short};
 use crate::robot::Chain;
@@ -151,18 +152,12 @@ fn or_zero(number: f64) -> f64 {
 /// The command that gives the pose at the joint positions `q` of the same chain.
 fn again(arguments: &InverseArguments, q: &str) -> String {
     let InverseArguments { file, base, tip, tool, .. } = arguments;
-    let mut command = format!("kinstep robot fk {} --base {base} --tip {tip}", file.robot);
-    if let Some(calibration) = &file.calibration {
-        let _ = write!(command, " --calibration {}", calibration.display());
-    }
-    for lock in &file.lock {
-        let _ = write!(command, " --lock {lock}");
-    }
+    let mut command = format!("kinstep robot fk {}", robot_words(file));
+    command += &(option("--base", base) + &option("--tip", tip));
     if let Some(tool) = tool {
-        let _ = write!(command, " --tool '{tool}'");
+        command += &option("--tool", tool);
     }
-    let _ = write!(command, " --q={q}");
-    command
+    command + &format!(" --q={q}")
 }
 
 impl Show for Answer {

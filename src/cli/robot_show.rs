@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::output::Show;
 use super::robot::Problem;
+use super::shell::{option, quoted};
 use crate::report::{Table, short};
 use crate::robot::{Chain, Joint, JointKind, Link, Robot};
 
@@ -21,8 +22,9 @@ pub(super) struct RobotCard {
     problems: Vec<Problem>,
     #[serde(skip)]
     rows: Vec<Row>,
+    /// The robot and what was done to it, as words of a command.
     #[serde(skip)]
-    label: String,
+    asked: String,
 }
 
 /// One joint of a robot; a limit that is not known is null.
@@ -58,7 +60,7 @@ struct Row {
 }
 
 impl RobotCard {
-    pub(super) fn new(robot: &Robot, label: &str) -> Self {
+    pub(super) fn new(robot: &Robot, asked: String) -> Self {
         let names = |links: Vec<&Link>| links.iter().map(|link| link.name.clone()).collect();
         Self {
             name: robot.name().to_owned(),
@@ -69,7 +71,7 @@ impl RobotCard {
             chains: chains(robot),
             problems: robot.diagnostics().iter().map(Problem::from).collect(),
             rows: rows(robot),
-            label: label.to_owned(),
+            asked,
         }
     }
 }
@@ -162,7 +164,7 @@ impl Show for RobotCard {
         let loud = self.problems.iter().filter(|problem| problem.severity != "note").count();
         if loud > 0 {
             let count = if loud == 1 { "1 problem".to_owned() } else { format!("{loud} problems") };
-            let _ = writeln!(text, "\n{count} in the file: see `kinstep robot check {}`.", self.label);
+            let _ = writeln!(text, "\n{count} in the file: see `kinstep robot check {}`.", self.asked);
         }
         text
     }
@@ -225,10 +227,10 @@ impl RobotCard {
             let _ = writeln!(
                 text,
                 "\nAny two links are base and tip of a chain, in either direction, for example:\n  \
-                 kinstep robot jacobian {} --base {} --tip {} --q={}",
-                quoted(&self.label),
-                quoted(&chain.base),
-                quoted(&chain.tip),
+                 kinstep robot jacobian {}{}{} --q={}",
+                self.asked,
+                option("--base", &chain.base),
+                option("--tip", &chain.tip),
                 q.join(",")
             );
         }
@@ -236,10 +238,10 @@ impl RobotCard {
         if let Some(free) = self.joints.iter().find(is_free) {
             let _ = writeln!(
                 text,
-                "\nNo chain passes through `{}`, which is {}, unless it is held still: --lock {}=0",
+                "\nNo chain passes through `{}`, which is {}, unless it is held still: --lock {}",
                 free.name,
                 free.kind,
-                quoted(&free.name)
+                quoted(&format!("{}=0", free.name))
             );
         }
     }
@@ -250,15 +252,5 @@ fn between(names: &[String]) -> String {
     match names {
         [first, .., last] if names.len() > 3 => format!("{first} ... {last}"),
         _ => names.join(", "),
-    }
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "_-./:+@%,".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }

@@ -146,7 +146,8 @@ impl Scenario {
                     common.filter(|name| other.chain().joints().iter().any(|j| &&j.name == name));
                 if let Some(joint) = common.next().filter(|_| is_unclear) {
                     let key = if spec.base == other_spec.base { "robot" } else { "base" };
-                    let differs = if key == "base" { "`base`" } else { "`calibration` and `lock`" };
+                    let differs =
+                        if key == "base" { "`base`" } else { "`calibration`, `lock` and `assume_unlimited`" };
                     let text = format!(
                         "arms `{}` and `{}` both move joint `{joint}` of one robot; give them the same {differs} to share the \
                          joint, or different mounts if there are two such robots",
@@ -225,7 +226,8 @@ pub(super) fn read_robot(
 ) -> Result<(RobotSource, Robot), ScenarioError> {
     let refuse = |e: ScenarioError| ScenarioError::at(e.kind, &at.key("robot"), e.message);
     let source = RobotSource::find(&spec.robot, folder).map_err(refuse)?;
-    let robot = source.read(&UrdfOptions::default()).map_err(|e| {
+    let options = UrdfOptions { assume_unlimited: spec.assume_unlimited, ..UrdfOptions::default() };
+    let robot = source.read(&options).map_err(|e| {
         let refusal = source.refusal(&e);
         let message = format!("{}: {}", at.key("robot"), refusal.message);
         let path = Some(at.key("robot")).filter(|_| refusal.kind == ErrorKind::File);
@@ -286,6 +288,7 @@ impl ArmSpec {
     pub(super) fn is_same_machine(&self, other: &Self) -> bool {
         (&self.robot, &self.base, &self.mount) == (&other.robot, &other.base, &other.mount)
             && (&self.calibration, &self.lock) == (&other.calibration, &other.lock)
+            && self.assume_unlimited == other.assume_unlimited
     }
 }
 

@@ -135,6 +135,9 @@ pub struct ArmSpec {
     /// Joints of the robot that are held still, by name; on the arm's path they count as fixed.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub lock: BTreeMap<String, Held>,
+    /// Whether joints without a `<limit>` element move without limits. Default: no chain passes through them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub assume_unlimited: bool,
     /// The path of the tip.
     pub path: PathSpec,
 }
