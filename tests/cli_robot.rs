@@ -464,6 +464,15 @@ fn a_robot_written_as_urdf_is_the_same_robot() {
     desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf"]).expect(0);
     desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf"]).expect(6);
     desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf", "--force"]).expect(0);
+    let taken = desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf"]).expect(6).err;
+    assert!(taken.contains("or name another place") && !taken.contains("folder"), "{taken}");
+    std::fs::create_dir(desk.path("folder")).unwrap();
+    for force in [&[][..], &["--force"]] {
+        let arguments = ["robot", "export", "arm.toml", "--urdf", "folder"];
+        let refused = desk.run(&[&arguments, force].concat()).expect(6).err;
+        assert_eq!(refused, "error: folder is a folder; name a file\n");
+    }
+    assert_eq!(desk.names("folder"), Vec::<String>::new());
     let text = desk.run(&["robot", "export", "arm.toml"]).expect(0).out;
     assert_eq!(std::fs::read_to_string(desk.path("arm.urdf")).unwrap(), text);
     assert_eq!(desk.run(&["robot", "export", "arm.toml", "--json"]).expect(0).json()["urdf"], json!(text));
