@@ -255,6 +255,32 @@ fn a_pose_that_is_no_number_is_refused_rather_than_written_as_null() {
     }
 }
 
+#[test]
+fn lengths_beyond_any_arm_are_refused_wherever_they_are_given() {
+    let urdf = include_str!("bad_input/urdf/origin_beyond_any_arm.urdf");
+    let desk = Desk::new(&[("far.urdf", urdf)]);
+    let refused =
+        desk.run(&["robot", "fk", "far.urdf", "--base", "a", "--tip", "b", "--q", "0"]).expect(3).err;
+    assert!(refused.contains("`xyz` of `<origin>`: 1e154 is beyond any arm; lengths [m]"), "{refused}");
+    let with = |option: &str, value: &str| {
+        let arguments =
+            ["robot", "fk", "planar4", "--base", "base", "--tip", "tip", "--q", "0,0,0,0", option, value];
+        desk.run(&arguments)
+    };
+    assert!(with("--tool", "1e154 0 0 0 0 0").expect(2).err.contains("--tool: 1e154 is beyond any arm"));
+    assert!(with("--tool", "0 0 0 0 0 1e7").expect(2).err.contains("--tool: 1e7 is beyond any arm"));
+    with("--tool", "1e6 0 0 0 0 0").expect(0);
+    assert!(
+        with("--lock", "j1=1e7")
+            .expect(3)
+            .err
+            .contains("`j1` can not be locked there: 1e7 is beyond any arm")
+    );
+    let desk = Desk::new(&[("mobile.urdf", MOBILE)]);
+    let arguments = ["robot", "check", "mobile.urdf", "--lock", "float=1e154 0 0 0 0 0"];
+    assert!(desk.run(&arguments).expect(3).err.contains("beyond any arm"));
+}
+
 /// A mobile arm: a floating base, two joints, and elements that kinematics ignores.
 const MOBILE: &str = r#"<robot name="mobile">
   <link name="world"/><link name="base"/><link name="arm"/><link name="left"/><link name="right"/>

@@ -426,6 +426,10 @@ fn a_tool_needs_a_link_and_a_name_of_its_own() {
     let error = robot.with_tool("panda_hnad", "pen", &tool).unwrap_err().to_string();
     assert!(error.contains("did you mean `panda_hand`"), "{error}");
     assert!(matches!(robot.with_tool("panda_hand", "panda_joint1", &tool), Err(ToolError::NameTaken { .. })));
+    for part in [f64::NAN, f64::INFINITY, 1e154] {
+        let far = IsometryMatrix3::translation(0.0, part, 0.0);
+        assert!(matches!(robot.with_tool("panda_hand", "pen", &far), Err(ToolError::Size { .. })), "{part}");
+    }
     let twice = robot.with_tool("panda_hand", "pen", &tool).unwrap().with_tool("pen", "nib", &tool).unwrap();
     assert_eq!(twice.chain("panda_link0", "nib").unwrap().dof(), 7);
 }

@@ -13,7 +13,9 @@ use super::shell::{option, quoted};
 use super::{formula_plot, robot_export, robot_ik};
 use crate::report::Table;
 use crate::report::figure::robot_figures;
-use crate::robot::{Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded, quote};
+use crate::robot::{
+    Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded, quote, unbelievable,
+};
 use crate::scenario::{RobotSource, calibrated, evaluate, suggestion, tool_name};
 
 pub(super) fn run(command: &RobotCommand, output: &mut Output) -> Result<Exit, Failure> {
@@ -318,7 +320,7 @@ pub(super) fn tooled_chain(
 /// Returns the robot with a tool on `tip`, and the link at which the chain then ends.
 fn tooled(robot: Robot, tip: &str, tool: Option<&str>) -> Result<(Robot, String), Failure> {
     let Some(text) = tool.filter(|_| robot.link(tip).is_some()) else { return Ok((robot, tip.to_owned())) };
-    let numbers = pose_numbers("--tool", text, text)?;
+    let numbers = believable("--tool", pose_numbers("--tool", text, text)?)?;
     let [x, y, z, roll, pitch, yaw] = numbers[..] else {
         let got = numbers.len();
         return Err(Failure::usage(format!("--tool: expected 6 numbers x y z roll pitch yaw, got {got}")));
@@ -336,6 +338,14 @@ pub(super) fn joint_positions(option: &str, text: Option<&str>, chain: &Chain) -
     let values = if text.trim().is_empty() { Vec::new() } else { numbers(option, text)? };
     chain.check_positions(&values).map_err(|e| Failure::usage(format!("{option}: {e}")))?;
     Ok(values)
+}
+
+/// Refuses lengths and angles that no arm has.
+pub(super) fn believable(option: &str, values: Vec<f64>) -> Result<Vec<f64>, Failure> {
+    match values.iter().find_map(|&value| unbelievable(value)) {
+        Some(problem) => Err(Failure::usage(format!("{option}: {problem}"))),
+        None => Ok(values),
+    }
 }
 
 /// Reads numbers or expressions in pi, separated by commas.

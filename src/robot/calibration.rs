@@ -6,7 +6,8 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 use thiserror::Error;
 
 use super::displacement::displacement;
-use super::toml_table::{Entries, MAX_SIZE, read_toml, wrong_type};
+use super::size::MAX_SIZE;
+use super::toml_table::{Entries, read_toml, wrong_type};
 use super::urdf::report::Report;
 use super::{Defect, Diagnostic, JointKind, Robot, diagnostic, names};
 

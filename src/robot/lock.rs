@@ -4,6 +4,7 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 use thiserror::Error;
 
 use super::displacement::displacement;
+use super::size::unbelievable;
 use super::{Defect, Joint, JointKind, Limits, Robot, names};
 
 /// Why a joint can not be locked.
@@ -56,6 +57,14 @@ pub enum LockError {
         /// The largest allowed.
         upper: f64,
     },
+    /// A position, or a number of a pose, that no arm has.
+    #[error("joint {} can not be locked there: {problem}", names::quote(.joint))]
+    Size {
+        /// The joint, or one that follows it.
+        joint: String,
+        /// What is wrong with the number.
+        problem: String,
+    },
     /// A position at which a joint that follows would leave its own limits.
     #[error("joint {} can not be locked at {position}: {}, which follows it, would stand at {value}, and moves between \
              {lower} and {upper}", names::quote(.joint), names::quote(.follower))]
@@ -93,8 +102,8 @@ impl Robot {
     /// origin; the single number 0 is the pose that moves nothing.
     ///
     /// # Errors
-    /// [`LockError`]: no such joint (with the nearest names), a defective or a fixed one, too few or too many numbers, or
-    /// a position outside its limits or those of a joint that follows it.
+    /// [`LockError`]: no such joint (with the nearest names), a defective or a fixed one, too few or too many numbers, a
+    /// position outside its limits or those of a joint that follows it, or a number beyond any arm.
     ///
     /// ```
     /// use kinstep::robot::embedded;
@@ -134,6 +143,9 @@ impl Robot {
                 if !(lower - slack <= own && own <= upper + slack) {
                     let (joint, follower) = (self.joints[driver].name.clone(), joint.name.clone());
                     return Err(LockError::Follower { joint, position, follower, value: own, lower, upper });
+                }
+                if unbelievable(own).is_some() {
+                    return Err(too_large(joint, own));
                 }
                 let held = displacement(joint.kind, joint.axis, own);
                 fix(&mut self.joints[index], &held);
@@ -177,6 +189,10 @@ impl Robot {
 
 /// The motion at which a joint is held.
 fn held(joint: &Joint, values: &[f64]) -> Result<IsometryMatrix3<f64>, LockError> {
+    let is_large = |value: &f64| value.is_finite() && unbelievable(*value).is_some();
+    if let Some(&value) = values.iter().find(|value| is_large(value)) {
+        return Err(too_large(joint, value));
+    }
     let count = || LockError::Count { joint: joint.name.clone(), kind: joint.kind, count: values.len() };
     match *values {
         [value] if joint.kind.is_movable() => {
@@ -193,6 +209,10 @@ fn held(joint: &Joint, values: &[f64]) -> Result<IsometryMatrix3<f64>, LockError
         }
         _ => Err(count()),
     }
+}
+
+fn too_large(joint: &Joint, value: f64) -> LockError {
+    LockError::Size { joint: joint.name.clone(), problem: unbelievable(value).unwrap_or_default() }
 }
 
 fn fix(joint: &mut Joint, held: &IsometryMatrix3<f64>) {

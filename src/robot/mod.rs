@@ -24,6 +24,7 @@ mod poses;
 mod positions;
 mod segment;
 mod side_by_side;
+mod size;
 mod toml_table;
 mod tool;
 mod tree;
@@ -47,3 +48,4 @@ pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Vis
 
 pub(crate) use names::quote;
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};
+pub(crate) use size::unbelievable;

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 use thiserror::Error;
 
-use crate::robot::toml_table::MAX_SIZE;
+use crate::robot::size::MAX_SIZE;
 use crate::robot::{Diagnostic, Joint, JointKind, Limits, Link, MAX_JOINTS, Robot, diagnostic, names};
 
 /// Most rows of a table: in the standard custom each makes two joints.

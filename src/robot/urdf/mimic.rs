@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::joint::RawJoint;
 use super::report::Report;
 use crate::robot::names::{quote, short_list};
-use crate::robot::{JointKind, Mimic};
+use crate::robot::{JointKind, Mimic, unbelievable};
 
 /// How a joint moves once mimic chains are folded.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -131,7 +131,7 @@ fn motion(
     let (multiplier, offset) = ratio(&joints[index]);
     if multiplier == 0.0 {
         joints[index].warn(place, "it mimics with multiplier 0: taken as fixed", report);
-        return Motion::Still { at: offset };
+        return still(index, offset, joints, report);
     }
     match target_motion.unwrap_or(Motion::Own) {
         Motion::Own if kind == JointKind::Fixed => {
@@ -140,7 +140,7 @@ fn motion(
                 &format!("it mimics joint {name}, which is fixed: taken as fixed"),
                 report,
             );
-            Motion::Still { at: offset }
+            still(index, offset, joints, report)
         }
         Motion::Still { at } => {
             joints[index].warn(
@@ -148,7 +148,7 @@ fn motion(
                 &format!("it mimics joint {name}, which does not move: taken as fixed"),
                 report,
             );
-            Motion::Still { at: multiplier * at + offset }
+            still(index, multiplier * at + offset, joints, report)
         }
         followed => {
             let at_first_hand = Mimic { driver: target, multiplier, offset };
@@ -160,6 +160,15 @@ fn motion(
             Motion::Follows { at_first_hand, in_the_end }
         }
     }
+}
+
+/// A joint that stands where no arm does is refused.
+fn still(index: usize, at: f64, joints: &mut [RawJoint], report: &mut Report<'_>) -> Motion {
+    if let Some(cause) = unbelievable(at) {
+        let place = joints[index].mimic.as_ref().map_or(joints[index].offset, |reference| reference.offset);
+        joints[index].fail(place, format!("where it stands still: {cause}"), report);
+    }
+    Motion::Still { at }
 }
 
 fn ratio(joint: &RawJoint) -> (f64, f64) {
