@@ -321,6 +321,42 @@ arm      turn    revolute                 0.5    1.5    1
     assert_eq!((&card["chains"][0]["base"], &card["chains"][0]["dof"]), (&json!("base"), &json!(2)));
 }
 
+/// A long arm with a link to the side at every link: half of the links are tips.
+fn comb(teeth: usize) -> String {
+    let mut urdf = "<robot name=\"comb\"><link name=\"l0\"/>".to_owned();
+    for tooth in 1..=teeth {
+        for (name, parent) in [(format!("l{tooth}"), tooth - 1), (format!("side{tooth}"), tooth - 1)] {
+            urdf += &format!(
+                "<link name=\"{name}\"/><joint name=\"to_{name}\" type=\"continuous\"><parent link=\"l{parent}\"/>\
+                 <child link=\"{name}\"/></joint>"
+            );
+        }
+    }
+    urdf + "</robot>"
+}
+
+#[test]
+fn a_large_tree_is_shown_in_a_text_of_its_own_order() {
+    let desk = Desk::new(&[("short.urdf", &comb(2_000)), ("long.urdf", &comb(4_000))]);
+    let begun = std::time::Instant::now();
+    let [short, long] =
+        ["short.urdf", "long.urdf"].map(|file| desk.run(&["robot", "show", file]).expect(0).out);
+    assert!(long.len() < 5 * short.len() / 2, "{} and {} bytes", short.len(), long.len());
+    assert!(long.lines().all(|line| line.chars().count() < 160));
+    assert!(begun.elapsed().as_secs() < 20);
+    assert!(
+        long.contains(
+            "\nand 3951 more; one of them: kinstep robot jacobian long.urdf --base LINK --tip LINK\n"
+        ),
+        "{long}"
+    );
+    // Beyond the bound a branch says what it is on.
+    assert!(long.contains("… side1000 (on l999)") && !long.contains("side1 (on"), "{long}");
+    let card = desk.run(&["robot", "show", "short.urdf", "--json"]).expect(0).json();
+    assert_eq!((card["chains"].as_array().unwrap().len(), &card["more_chains"]), (50, &json!(1951)));
+    assert_eq!(desk.run(&["robot", "show", "panda", "--json"]).expect(0).json()["more_chains"], 0);
+}
+
 /// The commands that a text suggests.
 fn suggested(text: &str) -> Vec<String> {
     let command = |line: &str| line.strip_prefix("  kinstep ").map(|rest| format!("kinstep {rest}"));

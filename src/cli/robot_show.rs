@@ -1,5 +1,6 @@
 //! `kinstep robot show`: the tree as people draw it, the chains through it, and what to ask next.
 
+use std::collections::HashSet;
 use std::fmt::Write;
 
 use serde::Serialize;
@@ -10,6 +11,13 @@ use super::shell::{option, quoted};
 use crate::report::{Table, short};
 use crate::robot::{Chain, Joint, JointKind, Link, Robot};
 
+/// Most chains that are listed.
+const MOST_CHAINS: usize = 50;
+/// How many branches of branches are set in.
+const MOST_BRANCHES: usize = 20;
+/// Most joint positions in a command that is suggested.
+const MOST_POSITIONS: usize = 100;
+
 /// A robot as people and programs look at it.
 #[derive(Serialize)]
 pub(super) struct RobotCard {
@@ -18,7 +26,10 @@ pub(super) struct RobotCard {
     roots: Vec<String>,
     tips: Vec<String>,
     joints: Vec<JointLine>,
+    /// The first of the chains; all of many would fill pages, and each has as many joints as it is long.
     chains: Vec<ChainLine>,
+    /// How many more there are.
+    more_chains: usize,
     problems: Vec<Problem>,
     #[serde(skip)]
     rows: Vec<Row>,
@@ -61,6 +72,7 @@ struct Row {
 
 impl RobotCard {
     pub(super) fn new(robot: &Robot, asked: String) -> Self {
+        let (chains, more_chains) = chains(robot);
         let names = |links: Vec<&Link>| links.iter().map(|link| link.name.clone()).collect();
         Self {
             name: robot.name().to_owned(),
@@ -68,7 +80,8 @@ impl RobotCard {
             roots: names(robot.roots().collect()),
             tips: names(robot.leaves().collect()),
             joints: robot.joints().iter().map(|joint| JointLine::new(robot, joint)).collect(),
-            chains: chains(robot),
+            chains,
+            more_chains,
             problems: robot.diagnostics().iter().map(Problem::from).collect(),
             rows: rows(robot),
             asked,
@@ -93,20 +106,40 @@ impl JointLine {
     }
 }
 
-/// The chains that something moves: to every tip from the link furthest above it that a chain reaches.
-fn chains(robot: &Robot) -> Vec<ChainLine> {
-    let passable = |joint: &Joint| joint.kind.is_supported() && joint.defect.is_none();
-    let line = |tip: &Link| {
-        let mut base = tip;
-        while let Some(joint) =
-            base.parent_joint.map(|joint| &robot.joints()[joint]).filter(|own| passable(own))
-        {
-            base = &robot.links()[joint.parent];
-        }
-        let chain = robot.chain(&base.name, &tip.name).ok().filter(|chain| chain.dof() > 0)?;
+/// The chains that something moves: to every tip from the link furthest above it that a chain reaches; and how many there
+/// are beyond those that are listed.
+fn chains(robot: &Robot) -> (Vec<ChainLine>, usize) {
+    // Parents stand before their children: what is known of a parent is known of the way to its child.
+    let mut ways: Vec<Way> = Vec::with_capacity(robot.links().len());
+    let is_sound = |joint: &Joint| {
+        let links = [joint.parent, joint.child].map(|link| &robot.links()[link]);
+        joint.defect.is_none() && links.iter().all(|link| link.defect.is_none())
+    };
+    for (index, link) in robot.links().iter().enumerate() {
+        let joint = link.parent_joint.map(|joint| &robot.joints()[joint]);
+        let passed = joint.filter(|joint| joint.kind.is_supported() && is_sound(joint));
+        ways.push(passed.map_or(Way { base: index, moves: false }, |joint| {
+            let above = &ways[joint.parent];
+            Way { base: above.base, moves: above.moves || joint.kind.is_movable() }
+        }));
+    }
+    let ends = robot.links().iter().zip(&ways).filter(|(_, way)| way.moves);
+    let is_tip: HashSet<&str> = robot.leaves().map(|link| link.name.as_str()).collect();
+    let mut ends = ends.filter(|(link, _)| is_tip.contains(link.name.as_str()));
+    let line = |(tip, way): (&Link, &Way)| {
+        let chain = robot.chain(&robot.links()[way.base].name, &tip.name).ok()?;
         Some(ChainLine::new(&chain))
     };
-    robot.leaves().filter_map(line).collect()
+    let listed = ends.by_ref().filter_map(line).take(MOST_CHAINS).collect();
+    (listed, ends.count())
+}
+
+/// How a link is reached from above.
+struct Way {
+    /// Index of the link furthest above that a chain reaches.
+    base: usize,
+    /// Whether anything moves in between.
+    moves: bool,
 }
 
 impl ChainLine {
@@ -128,7 +161,8 @@ fn near_zero((lower, upper): (f64, f64)) -> f64 {
     if lower <= 0.0 && 0.0 <= upper || !middle.is_finite() { 0.0 } else { (middle * 100.0).round() / 100.0 }
 }
 
-/// Draws the tree: branches where a link has several children, and one below the other where it has one.
+/// Draws the tree: branches where a link has several children, and one below the other where it has one. Branches of
+/// branches are set in to a bound; beyond it the link is named that such a branch is on.
 fn rows(robot: &Robot) -> Vec<Row> {
     let mut children = vec![0_usize; robot.links().len()];
     robot.joints().iter().for_each(|joint| children[joint.parent] += 1);
@@ -136,15 +170,20 @@ fn rows(robot: &Robot) -> Vec<Row> {
     let mut indents = vec![String::new(); robot.links().len()];
     let mut drawn = Vec::with_capacity(robot.links().len());
     for (index, row) in robot.tree().enumerate() {
-        let joint = row.link.parent_joint;
+        let (joint, name) = (row.link.parent_joint, &row.link.name);
         let above = joint.map(|joint| robot.joints()[joint].parent);
         let indent = above.map_or_else(String::new, |above| indents[above].clone());
-        let (mark, below) = match above {
-            Some(above) if children[above] > 1 && row.is_last => ("└ ", "  "),
-            Some(above) if children[above] > 1 => ("├ ", "│ "),
-            _ => ("", ""),
+        let is_deep = indent.chars().count() >= 2 * MOST_BRANCHES;
+        let branched = above.filter(|&above| children[above] > 1);
+        let (mark, below) = match branched {
+            Some(_) if is_deep => ("… ", ""),
+            Some(_) if row.is_last => ("└ ", "  "),
+            Some(_) => ("├ ", "│ "),
+            None => ("", ""),
         };
-        drawn.push(Row { drawn: format!("{indent}{mark}{}", row.link.name), joint });
+        let far = branched.filter(|&above| is_deep && above + 1 != index);
+        let on = far.map_or_else(String::new, |above| format!(" (on {})", robot.links()[above].name));
+        drawn.push(Row { drawn: format!("{indent}{mark}{name}{on}"), joint });
         indents[index] = format!("{indent}{below}");
     }
     drawn
@@ -159,6 +198,13 @@ impl Show for RobotCard {
         );
         if !self.chains.is_empty() {
             let _ = write!(text, "\n{}", self.chain_table());
+        }
+        if self.more_chains > 0 {
+            let (more, asked) = (self.more_chains, &self.asked);
+            let _ = writeln!(
+                text,
+                "and {more} more; one of them: kinstep robot jacobian {asked} --base LINK --tip LINK"
+            );
         }
         self.suggest(&mut text);
         let loud = self.problems.iter().filter(|problem| problem.severity != "note").count();
@@ -221,7 +267,8 @@ impl RobotCard {
     /// Says what can be asked next, with a command that works as it stands.
     fn suggest(&self, text: &mut String) {
         let reach = |chain: &&ChainLine| chain.reach.unwrap_or(0.0);
-        let most = self.chains.iter().rev().max_by(|a, b| reach(a).total_cmp(&reach(b)));
+        let short = self.chains.iter().filter(|chain| chain.dof <= MOST_POSITIONS);
+        let most = short.rev().max_by(|a, b| reach(a).total_cmp(&reach(b)));
         if let Some(chain) = most {
             let q: Vec<String> = chain.q.iter().map(f64::to_string).collect();
             let _ = writeln!(
