@@ -321,6 +321,85 @@ arm      turn    revolute                 0.5    1.5    1
     assert_eq!((&card["chains"][0]["base"], &card["chains"][0]["dof"]), (&json!("base"), &json!(2)));
 }
 
+#[test]
+fn names_and_paths_give_no_orders_to_a_terminal() {
+    let urdf =
+        MOBILE.replace("left", "le\u{9b}31mft&#10;x").replace("name=\"float\"", "name=\"fl\u{9b}oat\"");
+    let desk = Desk::new(&[("odd.urdf", &urdf)]);
+    let obeyed = |c: char| c.is_control() && c != '\n';
+    let shown = desk.run(&["robot", "show", "odd.urdf"]).expect(0).out;
+    assert!(shown.contains(r"├ le\u{9b}31mft\nx  grip") && !shown.contains(obeyed), "{shown}");
+    assert!(shown.contains(r"--lock $'fl\u009boat=0'"), "{shown}");
+    let [command] = &suggested(&shown)[..] else { panic!("one command: {shown}") };
+    assert!(command.contains(r"--tip $'le\u009b31mft\x0ax'"), "{command}");
+    let tip = "le\u{9b}31mft\nx";
+    let pose =
+        desk.run(&["robot", "fk", "odd.urdf", "--base", "base", "--tip", tip, "--q", "1,0"]).expect(0).out;
+    assert!(pose.starts_with(r"le\u{9b}31mft\nx in base"), "{pose}");
+    let short =
+        desk.run(&["robot", "fk", "odd.urdf", "--base", "base", "--tip", tip, "--q", "1"]).expect(2).err;
+    assert!(!short.contains(obeyed), "{short}");
+    let missing = desk.run(&["robot", "show", "a\u{1b}[31m\nb.urdf"]).expect(6).err;
+    assert!(
+        missing.starts_with(r"error: a\u{1b}[31m\nb.urdf: there is no such file")
+            && !missing.contains(obeyed),
+        "{missing}"
+    );
+}
+
+#[test]
+fn a_file_that_is_not_there_says_where_it_was_looked_for_and_what_is() {
+    let desk = Desk::new(&[("mobile.urdf", MOBILE), ("mine.toml", "[joint.turn]\nzero = 0.1\n")]);
+    let missing = |arguments: &[&str]| desk.run(arguments).expect(6).err;
+    let robot = missing(&["robot", "show", "mobil.urdf"]);
+    assert!(robot.contains("mobil.urdf: there is no such file (looked up from /"), "{robot}");
+    assert!(robot.ends_with("); did you mean `mobile.urdf`?\n"), "{robot}");
+    let elsewhere = missing(&["robot", "show", "robots/mobile.urdf"]);
+    assert!(elsewhere.ends_with("); there is no folder `robots`\n"), "{elsewhere}");
+    let calibration = missing(&["robot", "show", "mobile.urdf", "--calibration", "mime.toml"]);
+    assert!(calibration.contains("did you mean `mine.toml`?"), "{calibration}");
+    assert!(!missing(&["robot", "show", "zzzzzzzz.urdf"]).contains("did you mean"));
+    std::fs::create_dir(desk.path("plans")).unwrap();
+    std::fs::write(desk.path("plans/s.toml"), cli::SMALL.replace("planar4", "mobil.urdf")).unwrap();
+    let scenario = missing(&["plan", "plans/s.toml"]);
+    assert!(
+        scenario.contains("beside the scenario (plans/mobil.urdf) or in the working directory (mobil.urdf)"),
+        "{scenario}"
+    );
+    assert!(scenario.contains("did you mean `mobile.urdf`?"), "{scenario}");
+}
+
+#[test]
+fn options_that_can_not_be_meant_say_why() {
+    let desk = Desk::new(&[("mobile.urdf", MOBILE), ("taken", "")]);
+    let refused =
+        |arguments: &[&str], code: i32| desk.run(&[&["robot"], arguments].concat()).expect(code).err;
+    let ik = |option: &str| {
+        refused(&["ik", "planar4", "--base", "base", "--tip", "tip", "--position", "1,1", option], 2)
+    };
+    assert!(ik("--starts=0").contains("--starts <STARTS>': give a whole number, at least 1"));
+    assert!(ik("--starts=1.5").contains("a whole number"));
+    assert!(ik("--seed=-1").contains("give a whole number between 0 and 18446744073709551615"));
+    let spaced = ["ik", "planar4", "--base", "base", "--tip", "tip", "--position", "1,1", "--starts", "-1"];
+    let spaced = refused(&spaced, 2);
+    assert!(spaced.contains("at least 1") && !spaced.contains("tip:"), "{spaced}");
+    for q in ["turn=1,turn=0", "grip=0.1,0.2"] {
+        let twice = refused(&["show", "mobile.urdf", "--plot", "p", "--q", q], 2);
+        assert!(
+            twice.contains("`turn` is given twice") || twice.contains("`grip` is given twice"),
+            "{twice}"
+        );
+    }
+    let file = refused(&["show", "planar4", "--plot", "taken", "--force"], 6);
+    assert!(file.contains("taken: this is a file; --plot names a folder"), "{file}");
+    let picture = refused(&["show", "planar4", "--plot", "pp.png"], 2);
+    assert!(
+        picture
+            .contains("--plot pp.png: pictures are drawn as SVG; name a folder, or a file that ends in .svg")
+    );
+    assert!(!desk.path("pp.png").exists() && !desk.path("p").exists());
+}
+
 /// A long arm with a link to the side at every link: half of the links are tips.
 fn comb(teeth: usize) -> String {
     let mut urdf = "<robot name=\"comb\"><link name=\"l0\"/>".to_owned();

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::arguments::OutArguments;
 use super::failure::{Exit, Failure};
 use crate::report::{WriteError, write_whole};
+use crate::robot::shown;
 
 /// A folder for results, and whether files in it may be replaced.
 pub(super) struct Folder {
@@ -30,7 +31,7 @@ impl Folder {
         names: &[&str],
     ) -> Result<Self, Failure> {
         if path.exists() && !path.is_dir() {
-            let message = format!("{}: this is a file; {option} names a folder", path.display());
+            let message = format!("{}: this is a file; {option} names a folder", shown(path));
             return Err(Failure::new(Exit::File, message).in_file(&path.display().to_string()));
         }
         std::fs::create_dir_all(path)

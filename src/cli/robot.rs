@@ -14,7 +14,8 @@ use super::{formula_plot, robot_export, robot_ik};
 use crate::report::Table;
 use crate::report::figure::robot_figures;
 use crate::robot::{
-    Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded, quote, unbelievable,
+    Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded, printable, quote,
+    unbelievable,
 };
 use crate::scenario::{RobotSource, calibrated, evaluate, suggestion, tool_name};
 
@@ -55,7 +56,10 @@ pub(super) fn read(file: &RobotFile, output: &Output) -> Result<Robot, Failure> 
     let source = RobotSource::find(&file.robot, None)?;
     let robot = source.read(&options(file)).map_err(|e| source.refusal(&e))?;
     if output.is_verbose() {
-        robot.diagnostics().iter().for_each(|found| output.remark(&format!("{}:{found}", source.label())));
+        robot
+            .diagnostics()
+            .iter()
+            .for_each(|found| output.remark(&format!("{}:{found}", printable(&source.label()))));
     }
     edited(robot, file, output)
 }
@@ -124,12 +128,17 @@ fn all_positions(text: Option<&str>, robot: &Robot) -> Result<Vec<f64>, Failure>
         let message = format!("--q: expected {count} ({names}), or some of them as NAME=VALUE, got {got}");
         return Err(Failure::usage(message));
     }
+    let mut given: Vec<&str> = Vec::new();
     for (part, name) in parts.iter().zip(moving.iter().copied().chain(std::iter::repeat(""))) {
         let (name, value) = part.split_once('=').map_or((name, *part), |(name, value)| (name.trim(), value));
         if !moving.contains(&name) {
             let hint = suggestion(name, moving.iter().copied());
             return Err(Failure::usage(format!("--q: no joint \"{name}\" moves on its own; {hint}")));
         }
+        if given.contains(&name) {
+            return Err(Failure::usage(format!("--q {text}: joint {} is given twice", quote(name))));
+        }
+        given.push(name);
         let value = evaluate(value).map_err(|e| Failure::usage(format!("--q {text}: {e}")))?;
         if let Some(index) = place(name) {
             positions[index] = value;
@@ -229,7 +238,7 @@ fn check(file: &RobotFile, output: &mut Output) -> Result<Exit, Failure> {
     let problems = found.iter().map(Problem::from).collect();
     if output.is_quiet() {
         let grave = found.iter().filter(|problem| problem.severity != Severity::Note);
-        grave.for_each(|problem| output.remark(&format!("{}:{problem}", source.label())));
+        grave.for_each(|problem| output.remark(&format!("{}:{problem}", printable(&source.label()))));
     }
     output.show(&CheckResult { ok, problems, joints, links, label: source.label() })?;
     Ok(if ok { Exit::Done } else { Exit::Robot })
@@ -244,16 +253,16 @@ fn found_in(error: &ReadError) -> Vec<Diagnostic> {
 impl Show for CheckResult {
     fn text(&self) -> String {
         let mut text = String::new();
+        let label = printable(&self.label);
         for Problem { severity, line, column, message } in &self.problems {
-            let _ = writeln!(text, "{}:{line}:{column}: {severity}: {message}", self.label);
+            let _ = writeln!(text, "{label}:{line}:{column}: {severity}: {message}");
         }
         let count = |severity| self.problems.iter().filter(|problem| problem.severity == severity).count();
         let verdict = if self.ok { "usable" } else { "defective" };
         let (errors, warnings, notes) = (count("error"), count("warning"), count("note"));
         let _ = writeln!(
             text,
-            "{}: {verdict}; {} links, {} joints; {errors} errors, {warnings} warnings, {notes} notes",
-            self.label,
+            "{label}: {verdict}; {} links, {} joints; {errors} errors, {warnings} warnings, {notes} notes",
             self.links,
             self.joints.len()
         );
@@ -287,7 +296,8 @@ impl Kinematics {
         let rotation = pose.rotation.matrix();
         let numbers = pose.translation.vector.iter().chain(rotation).chain(columns.iter().flatten());
         if !numbers.copied().all(f64::is_finite) {
-            let message = format!("the pose of `{tip}` at these positions is too large to be computed");
+            let message =
+                format!("the pose of {} at these positions is too large to be computed", quote(&tip));
             return Err(Failure::new(Exit::Robot, message).in_file(&file.robot));
         }
         Ok(Self {

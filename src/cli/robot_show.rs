@@ -9,7 +9,7 @@ use super::output::Show;
 use super::robot::Problem;
 use super::shell::{option, quoted};
 use crate::report::{Table, short};
-use crate::robot::{Chain, Joint, JointKind, Link, Robot};
+use crate::robot::{Chain, Joint, JointKind, Link, Robot, printable, quote};
 
 /// Most chains that are listed.
 const MOST_CHAINS: usize = 50;
@@ -228,7 +228,8 @@ impl RobotCard {
             1 => "1 joint that moves".to_owned(),
             n => format!("{n} joints that move"),
         };
-        format!("{}: {} links, {moving}{following}, {fixed} fixed", self.name, self.links.len())
+        let (name, links) = (printable(&self.name), self.links.len());
+        format!("{name}: {links} links, {moving}{following}, {fixed} fixed")
     }
 
     fn tree(&self) -> Table {
@@ -285,8 +286,8 @@ impl RobotCard {
         if let Some(free) = self.joints.iter().find(is_free) {
             let _ = writeln!(
                 text,
-                "\nNo chain passes through `{}`, which is {}, unless it is held still: --lock {}",
-                free.name,
+                "\nNo chain passes through {}, which is {}, unless it is held still: --lock {}",
+                quote(&free.name),
                 free.kind,
                 quoted(&format!("{}=0", free.name))
             );

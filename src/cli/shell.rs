@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::robot::is_odd;
+
 /// Returns a word as a shell takes it: as it is, in quotes where it holds anything that means something to a shell, and with
 /// control characters by their numbers (`$'\x1b'`, as bash and zsh read it).
 pub(super) fn quoted(word: &str) -> String {
@@ -10,7 +12,7 @@ pub(super) fn quoted(word: &str) -> String {
     let is_plain = |(place, c): (usize, char)| plain(c) || (c == '=' && place > 0);
     if !word.is_empty() && word.char_indices().all(is_plain) {
         word.to_owned()
-    } else if word.chars().any(char::is_control) {
+    } else if word.contains(is_odd) {
         escaped(word)
     } else {
         format!("'{}'", word.replace('\'', r"'\''"))
@@ -24,7 +26,7 @@ fn escaped(word: &str) -> String {
         let _ = match c {
             '\'' | '\\' => write!(text, "\\{c}"),
             c if c.is_ascii_control() => write!(text, "\\x{:02x}", u32::from(c)),
-            c if c.is_control() => write!(text, "\\u{:04x}", u32::from(c)),
+            c if is_odd(c) => write!(text, "\\u{:04x}", u32::from(c)),
             c => write!(text, "{c}"),
         };
     }

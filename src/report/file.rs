@@ -4,17 +4,19 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use crate::robot::shown;
+
 /// Why a file was not written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// There is one of that name.
-    #[error("{} is already there; give --force to replace it, or name another place", .0.display())]
+    #[error("{} is already there; give --force to replace it, or name another place", shown(.0))]
     Exists(PathBuf),
     /// There is a folder of that name.
-    #[error("{} is a folder; name a file", .0.display())]
+    #[error("{} is a folder; name a file", shown(.0))]
     Folder(PathBuf),
     /// The system refused.
-    #[error("{} can not be written: {}", .path.display(), plain(.source))]
+    #[error("{} can not be written: {}", shown(.path), plain(.source))]
     Io {
         /// The file or folder.
         path: PathBuf,

@@ -19,6 +19,7 @@ mod kinematics;
 mod lock;
 mod model;
 mod names;
+pub(crate) mod nearby;
 mod path;
 mod poses;
 mod positions;
@@ -46,6 +47,6 @@ pub use tree::{TreeRow, TreeRows};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, ReadError, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 
-pub(crate) use names::quote;
+pub(crate) use names::{is_odd, printable, quote, shown};
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};
 pub(crate) use size::unbelievable;
