@@ -385,6 +385,22 @@ fn a_joint_that_can_not_be_locked_says_why() {
 }
 
 #[test]
+fn a_joint_is_locked_only_where_it_can_be() {
+    let planar = Robot::from_urdf(FREE).unwrap();
+    let spherical = Robot::from_urdf(&FREE.replace("type=\"planar\"", "type=\"spherical\"")).unwrap();
+    let refused = |robot: &Robot, pose: [f64; 6]| robot.with_locked("slide", &pose).unwrap_err().to_string();
+    // The plane is that of x and z.
+    planar.with_locked("slide", &[0.1, 0.0, 0.2, 0.0, 0.3, 0.0]).unwrap();
+    assert_eq!(
+        refused(&planar, [0.1, 0.2, 0.0, 0.0, 0.0, 0.0]),
+        "joint `slide` can not be locked there: it is planar, and moves in the plane normal to its axis alone"
+    );
+    assert!(refused(&planar, [0.1, 0.0, 0.0, 0.3, 0.0, 0.0]).contains("turns about the normal of its plane"));
+    spherical.with_locked("slide", &[0.0, 0.0, 0.0, 0.1, 0.2, 0.3]).unwrap();
+    assert!(refused(&spherical, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0]).contains("turns about its origin"));
+}
+
+#[test]
 fn a_calibration_that_does_not_fit_says_where() {
     let robot = Robot::from_urdf(FREE).unwrap();
     let refused = |text: &str| {

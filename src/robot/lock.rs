@@ -57,6 +57,16 @@ pub enum LockError {
         /// The largest allowed.
         upper: f64,
     },
+    /// A pose that the joint can not take.
+    #[error("joint {} can not be locked there: it is {kind}, and {problem}", names::quote(.joint))]
+    Pose {
+        /// The joint.
+        joint: String,
+        /// Its type.
+        kind: JointKind,
+        /// What the pose asks too much.
+        problem: &'static str,
+    },
     /// A position, or a number of a pose, that no arm has.
     #[error("joint {} can not be locked there: {problem}", names::quote(.joint))]
     Size {
@@ -205,9 +215,34 @@ fn held(joint: &Joint, values: &[f64]) -> Result<IsometryMatrix3<f64>, LockError
         [0.0] if !joint.kind.is_movable() => Ok(IsometryMatrix3::identity()),
         [x, y, z, roll, pitch, yaw] if !joint.kind.is_movable() && values.iter().all(|v| v.is_finite()) => {
             let turn = Rotation3::from_euler_angles(roll, pitch, yaw);
-            Ok(IsometryMatrix3::from_parts(Translation3::from(Vector3::new(x, y, z)), turn))
+            let pose = IsometryMatrix3::from_parts(Translation3::from(Vector3::new(x, y, z)), turn);
+            match pose_problem(joint, &pose) {
+                Some(problem) => {
+                    Err(LockError::Pose { joint: joint.name.clone(), kind: joint.kind, problem })
+                }
+                None => Ok(pose),
+            }
         }
         _ => Err(count()),
+    }
+}
+
+/// Says where a joint with several degrees of freedom can not be brought.
+fn pose_problem(joint: &Joint, pose: &IsometryMatrix3<f64>) -> Option<&'static str> {
+    /// How far a pose may be off for its few digits \[m\] or \[rad\].
+    const SLACK: f64 = 1e-6;
+    let (shift, normal) = (pose.translation.vector, joint.axis);
+    match joint.kind {
+        JointKind::Planar if shift.dot(&normal).abs() > SLACK => {
+            Some("moves in the plane normal to its axis alone")
+        }
+        JointKind::Planar if (pose.rotation * normal - normal).norm() > SLACK => {
+            Some("turns about the normal of its plane, its axis, alone")
+        }
+        JointKind::Spherical if shift.norm() > SLACK => {
+            Some("turns about its origin, which stays in its place")
+        }
+        _ => None,
     }
 }
 
