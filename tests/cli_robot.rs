@@ -402,16 +402,15 @@ fn options_that_can_not_be_meant_say_why() {
 
 /// A long arm with a link to the side at every link: half of the links are tips.
 fn comb(teeth: usize) -> String {
-    let mut urdf = "<robot name=\"comb\"><link name=\"l0\"/>".to_owned();
-    for tooth in 1..=teeth {
-        for (name, parent) in [(format!("l{tooth}"), tooth - 1), (format!("side{tooth}"), tooth - 1)] {
-            urdf += &format!(
-                "<link name=\"{name}\"/><joint name=\"to_{name}\" type=\"continuous\"><parent link=\"l{parent}\"/>\
-                 <child link=\"{name}\"/></joint>"
-            );
-        }
-    }
-    urdf + "</robot>"
+    let link = |name: String, parent: usize| {
+        format!(
+            "<link name=\"{name}\"/><joint name=\"to_{name}\" type=\"continuous\"><parent link=\"l{parent}\"/>\
+             <child link=\"{name}\"/></joint>"
+        )
+    };
+    let tooth = |i: usize| link(format!("l{i}"), i - 1) + &link(format!("side{i}"), i - 1);
+    let teeth: String = (1..=teeth).map(tooth).collect();
+    format!("<robot name=\"comb\"><link name=\"l0\"/>{teeth}</robot>")
 }
 
 #[test]

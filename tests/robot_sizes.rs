@@ -99,6 +99,6 @@ fn a_table_of_a_hundred_thousand_rows_is_refused() {
         message.starts_with("line 20002, column 1: the table has 100000 rows, more than the 10000"),
         "{message}"
     );
-    let made = Robot::from_dh(&DhTable::planar("long", &[1.0; 10_000])).unwrap_err().to_string();
+    let made = Robot::from_dh(&DhTable::planar("long", &vec![1.0; 10_000])).unwrap_err().to_string();
     assert!(made.contains("the table has 10001 rows") && made.contains("at most 10000"), "{made}");
 }

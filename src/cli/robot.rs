@@ -38,11 +38,11 @@ fn options(file: &RobotFile) -> UrdfOptions {
 /// Returns the robot and what was asked to be done to it, as words of a command.
 pub(super) fn robot_words(file: &RobotFile) -> String {
     let mut words = quoted(&file.robot);
-    for (_, flag) in [(file.assume_unlimited, "--assume-unlimited"), (file.strict, "--strict")]
-        .iter()
-        .filter(|(set, _)| *set)
-    {
-        words += &format!(" {flag}");
+    if file.assume_unlimited {
+        words += " --assume-unlimited";
+    }
+    if file.strict {
+        words += " --strict";
     }
     if let Some(calibration) = &file.calibration {
         words += &option("--calibration", &calibration.display().to_string());
