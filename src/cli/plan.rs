@@ -173,11 +173,19 @@ fn exit(plan: &Plan) -> Exit {
     }
 }
 
+/// What was laid over the scenario and what these arguments do not set anew, as arguments.
+fn still_set(arguments: &PlanArguments, next: &str) -> String {
+    let is_set_anew = |set: &str| {
+        let key = set.split('=').next().unwrap_or_default().trim();
+        next.contains(&format!("--set {key}="))
+    };
+    arguments.set.iter().filter(|set| !is_set_anew(set)).map(|set| option("--set", set)).collect()
+}
+
 /// Where the files are, and what to try next.
 fn closing(arguments: &PlanArguments, names: &[String], suggested: Vec<Suggestion>) -> String {
     let name = arguments.scenario.as_ref().map(|file| quoted(&file.display().to_string()));
-    let set = arguments.set.iter().map(|set| option("--set", set)).collect::<String>();
-    let name = name.map_or_else(String::new, |name| format!(" {name}")) + &set;
+    let name = name.map_or_else(String::new, |name| format!(" {name}"));
     let mut next = Vec::new();
     let mut written = String::new();
     match &arguments.written.out {
@@ -190,7 +198,10 @@ fn closing(arguments: &PlanArguments, names: &[String], suggested: Vec<Suggestio
         }
     }
     next.extend(suggested);
-    let line = |next: Suggestion| [format!("kinstep plan{name} {}", next.arguments), next.reason];
+    let line = |next: Suggestion| {
+        let set = still_set(arguments, &next.arguments);
+        [format!("kinstep plan{name}{set} {}", next.arguments), next.reason]
+    };
     let mut lines: Vec<[String; 2]> = next.into_iter().map(line).collect();
     if let Some(folder) = arguments.written.out.as_ref().filter(|_| !arguments.figures) {
         lines.push([

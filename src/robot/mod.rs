@@ -47,6 +47,8 @@ pub use tree::{TreeRow, TreeRows};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, ReadError, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 
-pub(crate) use names::{is_odd, printable, quote, shown};
+#[cfg(feature = "cli")]
+pub(crate) use names::{is_odd, quote};
+pub(crate) use names::{printable, shown};
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};
 pub(crate) use size::unbelievable;
