@@ -255,6 +255,32 @@ fn a_pose_that_is_no_number_is_refused_rather_than_written_as_null() {
     }
 }
 
+#[test]
+fn lengths_beyond_any_arm_are_refused_wherever_they_are_given() {
+    let urdf = include_str!("bad_input/urdf/origin_beyond_any_arm.urdf");
+    let desk = Desk::new(&[("far.urdf", urdf)]);
+    let refused =
+        desk.run(&["robot", "fk", "far.urdf", "--base", "a", "--tip", "b", "--q", "0"]).expect(3).err;
+    assert!(refused.contains("`xyz` of `<origin>`: 1e154 is beyond any arm; lengths [m]"), "{refused}");
+    let with = |option: &str, value: &str| {
+        let arguments =
+            ["robot", "fk", "planar4", "--base", "base", "--tip", "tip", "--q", "0,0,0,0", option, value];
+        desk.run(&arguments)
+    };
+    assert!(with("--tool", "1e154 0 0 0 0 0").expect(2).err.contains("--tool: 1e154 is beyond any arm"));
+    assert!(with("--tool", "0 0 0 0 0 1e7").expect(2).err.contains("--tool: 1e7 is beyond any arm"));
+    with("--tool", "1e6 0 0 0 0 0").expect(0);
+    assert!(
+        with("--lock", "j1=1e7")
+            .expect(3)
+            .err
+            .contains("`j1` can not be locked there: 1e7 is beyond any arm")
+    );
+    let desk = Desk::new(&[("mobile.urdf", MOBILE)]);
+    let arguments = ["robot", "check", "mobile.urdf", "--lock", "float=1e154 0 0 0 0 0"];
+    assert!(desk.run(&arguments).expect(3).err.contains("beyond any arm"));
+}
+
 /// A mobile arm: a floating base, two joints, and elements that kinematics ignores.
 const MOBILE: &str = r#"<robot name="mobile">
   <link name="world"/><link name="base"/><link name="arm"/><link name="left"/><link name="right"/>
@@ -293,6 +319,232 @@ arm      turn    revolute                 0.5    1.5    1
     let card = desk.run(&["robot", "show", "mobile.urdf", "--json"]).expect(0).json();
     assert_eq!(card["chains"][0]["joints"], json!(["turn", "grip"]));
     assert_eq!((&card["chains"][0]["base"], &card["chains"][0]["dof"]), (&json!("base"), &json!(2)));
+}
+
+#[test]
+fn names_and_paths_give_no_orders_to_a_terminal() {
+    let urdf =
+        MOBILE.replace("left", "le\u{9b}31mft&#10;x").replace("name=\"float\"", "name=\"fl\u{9b}oat\"");
+    let desk = Desk::new(&[("odd.urdf", &urdf)]);
+    let obeyed = |c: char| c.is_control() && c != '\n';
+    let shown = desk.run(&["robot", "show", "odd.urdf"]).expect(0).out;
+    assert!(shown.contains(r"├ le\u{9b}31mft\nx  grip") && !shown.contains(obeyed), "{shown}");
+    assert!(shown.contains(r"--lock $'fl\u009boat=0'"), "{shown}");
+    let [command] = &suggested(&shown)[..] else { panic!("one command: {shown}") };
+    assert!(command.contains(r"--tip $'le\u009b31mft\x0ax'"), "{command}");
+    let tip = "le\u{9b}31mft\nx";
+    let pose =
+        desk.run(&["robot", "fk", "odd.urdf", "--base", "base", "--tip", tip, "--q", "1,0"]).expect(0).out;
+    assert!(pose.starts_with(r"le\u{9b}31mft\nx in base"), "{pose}");
+    let short =
+        desk.run(&["robot", "fk", "odd.urdf", "--base", "base", "--tip", tip, "--q", "1"]).expect(2).err;
+    assert!(!short.contains(obeyed), "{short}");
+    let missing = desk.run(&["robot", "show", "a\u{1b}[31m\nb.urdf"]).expect(6).err;
+    assert!(
+        missing.starts_with(r"error: a\u{1b}[31m\nb.urdf: there is no such file")
+            && !missing.contains(obeyed),
+        "{missing}"
+    );
+}
+
+#[test]
+fn a_file_that_is_not_there_says_where_it_was_looked_for_and_what_is() {
+    let desk = Desk::new(&[("mobile.urdf", MOBILE), ("mine.toml", "[joint.turn]\nzero = 0.1\n")]);
+    let missing = |arguments: &[&str]| desk.run(arguments).expect(6).err;
+    let robot = missing(&["robot", "show", "mobil.urdf"]);
+    assert!(robot.contains("mobil.urdf: there is no such file (looked up from /"), "{robot}");
+    assert!(robot.ends_with("); did you mean `mobile.urdf`?\n"), "{robot}");
+    let elsewhere = missing(&["robot", "show", "robots/mobile.urdf"]);
+    assert!(elsewhere.ends_with("); there is no folder `robots`\n"), "{elsewhere}");
+    let calibration = missing(&["robot", "show", "mobile.urdf", "--calibration", "mime.toml"]);
+    assert!(calibration.contains("did you mean `mine.toml`?"), "{calibration}");
+    assert!(!missing(&["robot", "show", "zzzzzzzz.urdf"]).contains("did you mean"));
+    std::fs::create_dir(desk.path("plans")).unwrap();
+    std::fs::write(desk.path("plans/s.toml"), cli::SMALL.replace("planar4", "mobil.urdf")).unwrap();
+    let scenario = missing(&["plan", "plans/s.toml"]);
+    assert!(
+        scenario.contains("beside the scenario (plans/mobil.urdf) or in the working directory (mobil.urdf)"),
+        "{scenario}"
+    );
+    assert!(scenario.contains("did you mean `mobile.urdf`?"), "{scenario}");
+}
+
+#[test]
+fn options_that_can_not_be_meant_say_why() {
+    let desk = Desk::new(&[("mobile.urdf", MOBILE), ("taken", "")]);
+    let refused =
+        |arguments: &[&str], code: i32| desk.run(&[&["robot"], arguments].concat()).expect(code).err;
+    let ik = |option: &str| {
+        refused(&["ik", "planar4", "--base", "base", "--tip", "tip", "--position", "1,1", option], 2)
+    };
+    assert!(ik("--starts=0").contains("--starts <STARTS>': give a whole number, at least 1"));
+    assert!(ik("--starts=1.5").contains("a whole number"));
+    assert!(ik("--seed=-1").contains("give a whole number between 0 and 18446744073709551615"));
+    let spaced = ["ik", "planar4", "--base", "base", "--tip", "tip", "--position", "1,1", "--starts", "-1"];
+    let spaced = refused(&spaced, 2);
+    assert!(spaced.contains("at least 1") && !spaced.contains("tip:"), "{spaced}");
+    for q in ["turn=1,turn=0", "grip=0.1,0.2"] {
+        let twice = refused(&["show", "mobile.urdf", "--plot", "p", "--q", q], 2);
+        assert!(
+            twice.contains("`turn` is given twice") || twice.contains("`grip` is given twice"),
+            "{twice}"
+        );
+    }
+    let file = refused(&["show", "planar4", "--plot", "taken", "--force"], 6);
+    assert!(file.contains("taken: this is a file; --plot names a folder"), "{file}");
+    let picture = refused(&["show", "planar4", "--plot", "pp.png"], 2);
+    assert!(
+        picture
+            .contains("--plot pp.png: pictures are drawn as SVG; name a folder, or a file that ends in .svg")
+    );
+    assert!(!desk.path("pp.png").exists() && !desk.path("p").exists());
+}
+
+/// A long arm with a link to the side at every link: half of the links are tips.
+fn comb(teeth: usize) -> String {
+    let link = |name: String, parent: usize| {
+        format!(
+            "<link name=\"{name}\"/><joint name=\"to_{name}\" type=\"continuous\"><parent link=\"l{parent}\"/>\
+             <child link=\"{name}\"/></joint>"
+        )
+    };
+    let tooth = |i: usize| link(format!("l{i}"), i - 1) + &link(format!("side{i}"), i - 1);
+    let teeth: String = (1..=teeth).map(tooth).collect();
+    format!("<robot name=\"comb\"><link name=\"l0\"/>{teeth}</robot>")
+}
+
+#[test]
+fn a_large_tree_is_shown_in_a_text_of_its_own_order() {
+    let desk = Desk::new(&[("short.urdf", &comb(2_000)), ("long.urdf", &comb(4_000))]);
+    let begun = std::time::Instant::now();
+    let [short, long] =
+        ["short.urdf", "long.urdf"].map(|file| desk.run(&["robot", "show", file]).expect(0).out);
+    assert!(long.len() < 5 * short.len() / 2, "{} and {} bytes", short.len(), long.len());
+    assert!(long.lines().all(|line| line.chars().count() < 160));
+    assert!(begun.elapsed().as_secs() < 20);
+    assert!(
+        long.contains(
+            "\nand 3951 more; one of them: kinstep robot jacobian long.urdf --base LINK --tip LINK\n"
+        ),
+        "{long}"
+    );
+    // Beyond the bound a branch says what it is on.
+    assert!(long.contains("… side1000 (on l999)") && !long.contains("side1 (on"), "{long}");
+    let card = desk.run(&["robot", "show", "short.urdf", "--json"]).expect(0).json();
+    assert_eq!((card["chains"].as_array().unwrap().len(), &card["more_chains"]), (50, &json!(1951)));
+    assert_eq!(desk.run(&["robot", "show", "panda", "--json"]).expect(0).json()["more_chains"], 0);
+}
+
+/// The commands that a text suggests.
+fn suggested(text: &str) -> Vec<String> {
+    let command = |line: &str| line.strip_prefix("  kinstep ").map(|rest| format!("kinstep {rest}"));
+    text.lines().filter_map(command).collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn suggested_commands_do_what_was_asked_before() {
+    // Odd names, a joint without a limit, and one that stands still only because it is asked to.
+    let urdf = MOBILE
+        .replace("base", "the base")
+        .replace("left", "it's left")
+        .replace("name=\"float\"", "name=\"the float\"")
+        .replace("<limit lower=\"0.5\" upper=\"1.5\" effort=\"1\" velocity=\"1\"/>", "");
+    let desk = Desk::new(&[("my robot.urdf", &urdf), ("my own.toml", "[joint.turn]\nxyz = [0, 0, 0.5]\n")]);
+    let asked = [
+        "my robot.urdf",
+        "--assume-unlimited",
+        "--lock",
+        "the float=0 0 1 0 0 0",
+        "--calibration",
+        "my own.toml",
+    ];
+    let text = desk.run(&[&["robot", "show"][..], &asked].concat()).expect(0).out;
+    let [command] = &suggested(&text)[..] else { panic!("one command: {text}") };
+    assert!(command.contains("--base world") && command.contains(r"--tip 'it'\''s left'"), "{command}");
+    desk.shell(command).expect(0);
+    // Without what was asked for, the chain is another one: nothing passes the joint without a limit.
+    desk.shell(&command.replace("--assume-unlimited", "")).expect(3);
+    desk.shell(&command.replace("--lock 'the float=0 0 1 0 0 0'", "")).expect(3);
+
+    let chain =
+        ["--base", "world", "--tip", "it's left", "--tool", "0 0 0.1 0 0 0", "--position=0.8,0.603,1.6"];
+    let answer = desk.run(&[&["robot", "ik"][..], &asked, &chain].concat()).expect(0).out;
+    let [command] = &suggested(&answer)[..] else { panic!("one command: {answer}") };
+    let pose = desk.shell(&format!("{command} --json")).expect(0).json();
+    for (found, wanted) in pose["position"].as_array().unwrap().iter().zip([0.8, 0.603, 1.6]) {
+        assert!((found.as_f64().unwrap() - wanted).abs() < 1e-6, "{pose}");
+    }
+
+    let free = desk.run(&["robot", "show", "my robot.urdf", "--assume-unlimited"]).expect(0).out;
+    assert!(free.contains("unless it is held still: --lock 'the float=0'"), "{free}");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_to_try_after_a_plan_can_be_typed_as_it_stands() {
+    let desk = Desk::new(&[]);
+    std::fs::create_dir(desk.path("sp ace")).unwrap();
+    std::fs::write(desk.path("sp ace/x.toml"), cli::SMALL).unwrap();
+    let text =
+        desk.run(&["plan", "sp ace/x.toml", "--set", "law.gain=8", "--out", "my results"]).expect(0).out;
+    let commands = suggested(&text);
+    assert!(
+        commands
+            .iter()
+            .any(|command| command.starts_with("kinstep plan 'sp ace/x.toml' --set law.gain=8 --set")),
+        "{text}"
+    );
+    for command in commands {
+        desk.shell(&command).expect(0);
+    }
+}
+
+#[test]
+fn a_joint_without_limits_moves_when_a_scenario_asks_for_it() {
+    let urdf = r#"<robot name="loose"><link name="base"/><link name="a"/><link name="tip"/>
+<joint name="j1" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint>
+<joint name="j2" type="continuous"><parent link="a"/><child link="tip"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/></joint></robot>"#;
+    let scenario = cli::SMALL.replace("planar4", "loose.urdf").replace("0.3, 0.3, 0.3]", "0.3]");
+    let scenario = scenario.replace("tip = \"tip\"", "tip = \"tip\"\ntool = { xyz = [1, 0, 0] }");
+    let desk = Desk::new(&[("loose.urdf", urdf), ("s.toml", &scenario)]);
+    let refused = desk.run(&["plan", "s.toml"]).expect(3).err;
+    assert!(
+        refused.contains("no `<limit>`") && refused.contains("in a scenario `assume_unlimited = true`"),
+        "{refused}"
+    );
+    desk.run(&["plan", "s.toml", "--set", "arm.left.assume_unlimited=true", "--out", "results"]).expect(0);
+    let written = std::fs::read_to_string(desk.path("results/scenario.toml")).unwrap();
+    assert!(written.contains("assume_unlimited = true"), "{written}");
+    desk.run(&["plan", "results/scenario.toml"]).expect(0);
+}
+
+/// Three joints of which each follows the one before it.
+const FOLLOWING: &str = r#"<robot name="mc"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+<joint name="j1" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+  <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+<joint name="j2" type="revolute"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>
+  <limit lower="-2" upper="2" effort="1" velocity="1"/><mimic joint="j1"/></joint>
+<joint name="j3" type="revolute"><parent link="c"/><child link="d"/><axis xyz="0 0 1"/>
+  <limit lower="-2" upper="2" effort="1" velocity="1"/><mimic joint="j2"/></joint></robot>"#;
+
+#[test]
+fn a_joint_stands_still_with_the_locked_one_that_it_follows() {
+    let desk = Desk::new(&[("mc.urdf", FOLLOWING), ("mine.toml", "[joint.j2]\nreversed = true\n")]);
+    let fk = |extra: &[&str]| {
+        let chain = ["robot", "fk", "mc.urdf", "--base", "c", "--tip", "d", "--json"];
+        desk.run(&[&chain, extra].concat())
+    };
+    let held = fk(&["--lock", "j2=0.4"]).expect(0);
+    let pose = held.json();
+    assert_eq!(pose["joints"], json!([]));
+    assert!((pose["rotation"][1][0].as_f64().unwrap() - 0.4_f64.sin()).abs() < 1e-15, "{pose}");
+    assert_eq!(held.err, "note: joint `j2` is locked and follows `j1` no longer; `j1` moves without it\n");
+    assert_eq!(fk(&["--lock", "j1=0.4"]).expect(0).err, "", "a joint that follows none leaves none alone");
+    fk(&["--lock", "j2=0.4", "--q", "0.1"]).expect(2);
+    // A correction of the one in the middle reaches the last too.
+    let reversed = fk(&["--calibration", "mine.toml", "--q", "0.3"]).expect(0).json();
+    assert!((reversed["rotation"][1][0].as_f64().unwrap() + 0.3_f64.sin()).abs() < 1e-15, "{reversed}");
 }
 
 #[test]
@@ -352,6 +604,15 @@ fn a_robot_written_as_urdf_is_the_same_robot() {
     desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf"]).expect(0);
     desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf"]).expect(6);
     desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf", "--force"]).expect(0);
+    let taken = desk.run(&["robot", "export", "arm.toml", "--urdf", "arm.urdf"]).expect(6).err;
+    assert!(taken.contains("or name another place") && !taken.contains("folder"), "{taken}");
+    std::fs::create_dir(desk.path("folder")).unwrap();
+    for force in [&[][..], &["--force"]] {
+        let arguments = ["robot", "export", "arm.toml", "--urdf", "folder"];
+        let refused = desk.run(&[&arguments, force].concat()).expect(6).err;
+        assert_eq!(refused, "error: folder is a folder; name a file\n");
+    }
+    assert_eq!(desk.names("folder"), Vec::<String>::new());
     let text = desk.run(&["robot", "export", "arm.toml"]).expect(0).out;
     assert_eq!(std::fs::read_to_string(desk.path("arm.urdf")).unwrap(), text);
     assert_eq!(desk.run(&["robot", "export", "arm.toml", "--json"]).expect(0).json()["urdf"], json!(text));

@@ -82,6 +82,31 @@ fn a_written_scenario_finds_its_calibration_and_plans_the_same_again() {
     assert_ne!(bytes("one"), bytes("three"));
 }
 
+/// Two arms on one trunk, from the floor and so with two joints in common.
+const TRUNK: &str = include_str!("bad_input/scenario/arms_share_a_joint_independently.toml");
+
+#[test]
+fn arms_that_shall_be_independent_may_not_share_a_joint() {
+    let desk = Desk::new(&[("s.toml", &TRUNK.replace("duration = 4.0", "duration = 8.0"))]);
+    let refused = desk.run(&["plan", "s.toml"]).expect(2).err;
+    assert!(
+        refused.contains("arm.right.independent: arms `left` and `right` both move joint `lift`"),
+        "{refused}"
+    );
+    // Whichever of the two asks for it.
+    let other = ["--set", "arm.right.independent=false", "--set", "arm.left.independent=true"];
+    assert!(
+        desk.run(&[&["plan", "s.toml"][..], &other].concat()).expect(2).err.contains("arm.left.independent")
+    );
+    desk.run(&["plan", "s.toml", "--set", "arm.right.independent=false"]).expect(0);
+    // What is said as a remedy is one.
+    let still = "{ lift = 0.1, waist = 0.1 }";
+    let locks = ["left", "right"].map(|arm| format!("arm.{arm}.lock={still}"));
+    let starts = ["left", "right"].map(|arm| format!("arm.{arm}.q0=[0.3, 0.4, -0.8, 0.2, 0.5, 0.1]"));
+    let set = locks.iter().chain(&starts).flat_map(|set| ["--set", set.as_str()]);
+    desk.run(&["plan", "s.toml"].into_iter().chain(set).collect::<Vec<_>>()).expect(0);
+}
+
 #[test]
 fn a_free_joint_on_the_path_is_named_with_its_remedy() {
     let free = BY_HAND.replace("name=\"j4\" type=\"continuous\"", "name=\"j4\" type=\"floating\"");

@@ -68,6 +68,9 @@ fn a_file_that_is_missing_or_a_directory_is_named() {
         message.starts_with("can not read no/such/arm.urdf: there is no such file (looked up from "),
         "{message}"
     );
+    assert!(message.ends_with("); there is no folder `no/such`"), "{message}");
+    let near = Robot::from_urdf_file(folder().join("axis_zeor.urdf"), &options).unwrap_err().to_string();
+    assert!(near.contains("; did you mean `") && near.contains("axis_zero.urdf`"), "{near}");
     let directory = Robot::from_urdf_file(folder(), &options).unwrap_err().to_string();
     assert!(directory.contains("it is a directory; name the .urdf file inside it"), "{directory}");
 }
@@ -278,8 +281,9 @@ fn a_chain_of_ten_thousand_joints_is_read_and_posed_without_recursion() {
 
 #[test]
 fn too_many_links_elements_or_bytes_are_refused() {
-    let message = first_error(&chain_of(MAX_JOINTS));
-    assert!(message.contains("20001 links, more than the 20000"), "{message}");
+    assert_eq!(Robot::from_urdf(&chain_of(MAX_JOINTS)).unwrap().joints().len(), MAX_JOINTS);
+    let message = first_error(&chain_of(MAX_JOINTS + 1));
+    assert!(message.contains("20002 links, more than the 20001"), "{message}");
     let message = first_error(&format!("<robot name=\"wide\">{}</robot>", "<a/>".repeat(2_000_001)));
     assert!(message.contains("more than 2000000 elements"), "{message}");
     let attributes: String = (0..300).fold(String::new(), |mut all, index| {

@@ -12,7 +12,8 @@ use kinstep::robot::{
 use kinstep::study::strategies::{ChainCase, TreeCase, chains, trees};
 use proptest::prelude::*;
 use proptest::sample::Index;
-use trees::{distance, poses};
+use std::collections::BTreeMap;
+use trees::{distance, poses, poses_at};
 
 fn pose(chain: &Chain, q: &[f64]) -> IsometryMatrix3<f64> {
     chain.forward(q, &mut chain.scratch()).pose()
@@ -36,7 +37,86 @@ fn mover(robot: &Robot, pick: Index) -> Option<String> {
     (!movers.is_empty()).then(|| pick.get(&movers).clone())
 }
 
+/// A tree of which some joints are corrected and some are held, by their places.
+struct Edited<'a> {
+    tree: &'a TreeCase,
+    /// Position of the model where the arm reads zero, and the sign with which it counts.
+    corrections: BTreeMap<usize, (f64, f64)>,
+    /// The readings at which joints are held.
+    locks: BTreeMap<usize, f64>,
+}
+
+impl Edited<'_> {
+    /// What the arm reads at a joint: followers are coupled to the body of the joint that they name.
+    fn reading(&self, i: usize) -> f64 {
+        match (self.locks.get(&i), self.tree.joints[i].follower) {
+            (Some(&held), _) => held,
+            (None, Some(follower)) => {
+                f64::from(follower.multiplier) / 4.0 * self.body(follower.driver)
+                    + f64::from(follower.offset) / 10.0
+            }
+            (None, None) => self.tree.position(i),
+        }
+    }
+
+    /// Where the model's joint stands.
+    fn body(&self, i: usize) -> f64 {
+        let (zero, sign) = self.corrections.get(&i).copied().unwrap_or((0.0, 1.0));
+        sign * self.reading(i) + zero
+    }
+
+    fn name(i: usize) -> String {
+        format!("j{}", i + 1)
+    }
+}
+
 proptest! {
+    #[test]
+    fn locks_and_calibrations_reach_followers_of_followers(
+        tree in trees(),
+        corrections in prop::collection::vec((any::<Index>(), -0.5..0.5, prop::bool::ANY), 0..4),
+        locks in prop::collection::vec((any::<Index>(), -1.0..1.0), 0..4),
+    ) {
+        let robot = tree.robot().unwrap();
+        let movable: Vec<usize> = (0..tree.joints.len()).filter(|&i| tree.joints[i].kind != JointKind::Fixed).collect();
+        let mut edited = Edited { tree: &tree, corrections: BTreeMap::new(), locks: BTreeMap::new() };
+        let mut calibration = Calibration::default();
+        for (pick, zero, reversed) in corrections {
+            let joint = *pick.get(&movable);
+            calibration.insert(Edited::name(joint), JointCorrection { zero, reversed, ..JointCorrection::default() });
+            edited.corrections.insert(joint, (zero, if reversed { -1.0 } else { 1.0 }));
+        }
+        let mut changed = robot.with_calibration(&calibration).unwrap();
+        for (pick, held) in locks {
+            let joint = *pick.get(&movable);
+            // It may stand still already, or leave a follower no place within its limits.
+            if let Ok(locked) = changed.with_locked(&Edited::name(joint), &[held]) {
+                changed = locked;
+                edited.locks.insert(joint, held);
+            }
+        }
+        let expected = poses_at(&tree, |i| edited.body(i));
+        let positions: Vec<f64> = changed.joints().iter().map(|own| tree.position_of(&own.name).unwrap()).collect();
+        let at = |link: &str| &expected[link[1..].parse::<usize>().unwrap()];
+        for (link, found) in changed.links().iter().zip(changed.link_poses(&positions)) {
+            prop_assert!(distance(&found, at(&link.name)) < 1e-11, "{}", link.name);
+        }
+        for link in changed.leaves() {
+            let Ok(chain) = changed.chain("l0", &link.name) else { continue };
+            prop_assert!(chain.joints().iter().all(|own| changed.movable_joints().any(|free| free.name == own.name)));
+            prop_assert!(distance(&pose(&chain, &tree.q_of(&chain)), at(&link.name)) < 1e-11, "{}", link.name);
+        }
+        // Written down, it is the same robot: it can be changed further.
+        let again = Robot::from_urdf(&changed.to_urdf().unwrap());
+        if let Ok(again) = again {
+            prop_assert!(changed.joints().iter().zip(again.joints()).all(|(own, read)| own.mimic == read.mimic));
+            for own in changed.joints() {
+                let name = |followed: Option<&Joint>| followed.map(|followed| followed.name.clone());
+                prop_assert_eq!(name(changed.joint_followed_by(&own.name)), name(again.joint_followed_by(&own.name)));
+            }
+        }
+    }
+
     #[test]
     fn a_locked_joint_is_the_same_robot_with_that_joint_left_alone(
         ChainCase { tree, base, tip } in chains(), pick in any::<Index>(),
@@ -217,6 +297,34 @@ fn joints_with_many_freedoms_are_passed_once_they_are_held() {
 }
 
 #[test]
+fn a_follower_in_the_middle_is_held_with_what_follows_it_alone() {
+    let joint = |name: &str, ends: [&str; 2], rest: &str| {
+        let [parent, child] = ends;
+        format!(
+            "<joint name=\"{name}\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{child}\"/><axis xyz=\"0 0 1\"/>\
+             <limit lower=\"-2\" upper=\"2\" effort=\"1\" velocity=\"1\"/>{rest}</joint>"
+        )
+    };
+    let text = format!(
+        "<robot name=\"mc\"><link name=\"a\"/><link name=\"b\"/><link name=\"c\"/><link name=\"d\"/>{}{}{}</robot>",
+        joint("j1", ["a", "b"], ""),
+        joint("j2", ["b", "c"], "<mimic joint=\"j1\"/>"),
+        joint("j3", ["c", "d"], "<mimic joint=\"j2\" multiplier=\"2\"/>"),
+    );
+    let robot = Robot::from_urdf(&text).unwrap();
+    assert_eq!(robot.joint_followed_by("j3").unwrap().name, "j2");
+    assert_eq!(robot.joint("j3").unwrap().mimic.unwrap().driver, 0, "the one that drives it in the end");
+    let locked = robot.with_locked("j2", &[0.4]).unwrap();
+    let chain = locked.chain("c", "d").unwrap();
+    assert_eq!(chain.dof(), 0);
+    assert!((pose(&chain, &[]).rotation.angle() - 0.8).abs() < 1e-15);
+    assert_eq!(locked.chain("a", "b").unwrap().dof(), 1, "what it followed is free");
+    let refused = robot.with_locked("j2", &[1.5]).unwrap_err();
+    assert!(refused.to_string().contains("`j3`, which follows it, would stand at 3"), "{refused}");
+    assert_eq!(robot.with_locked("j1", &[0.4]).unwrap().chain("a", "d").unwrap().dof(), 0);
+}
+
+#[test]
 fn odd_names_free_joints_and_unknown_limits_survive_the_writing() {
     let robot = Robot::from_urdf(FREE).unwrap();
     let text = robot.to_urdf().unwrap();
@@ -277,6 +385,22 @@ fn a_joint_that_can_not_be_locked_says_why() {
 }
 
 #[test]
+fn a_joint_is_locked_only_where_it_can_be() {
+    let planar = Robot::from_urdf(FREE).unwrap();
+    let spherical = Robot::from_urdf(&FREE.replace("type=\"planar\"", "type=\"spherical\"")).unwrap();
+    let refused = |robot: &Robot, pose: [f64; 6]| robot.with_locked("slide", &pose).unwrap_err().to_string();
+    // The plane is that of x and z.
+    planar.with_locked("slide", &[0.1, 0.0, 0.2, 0.0, 0.3, 0.0]).unwrap();
+    assert_eq!(
+        refused(&planar, [0.1, 0.2, 0.0, 0.0, 0.0, 0.0]),
+        "joint `slide` can not be locked there: it is planar, and moves in the plane normal to its axis alone"
+    );
+    assert!(refused(&planar, [0.1, 0.0, 0.0, 0.3, 0.0, 0.0]).contains("turns about the normal of its plane"));
+    spherical.with_locked("slide", &[0.0, 0.0, 0.0, 0.1, 0.2, 0.3]).unwrap();
+    assert!(refused(&spherical, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0]).contains("turns about its origin"));
+}
+
+#[test]
 fn a_calibration_that_does_not_fit_says_where() {
     let robot = Robot::from_urdf(FREE).unwrap();
     let refused = |text: &str| {
@@ -318,6 +442,10 @@ fn a_tool_needs_a_link_and_a_name_of_its_own() {
     let error = robot.with_tool("panda_hnad", "pen", &tool).unwrap_err().to_string();
     assert!(error.contains("did you mean `panda_hand`"), "{error}");
     assert!(matches!(robot.with_tool("panda_hand", "panda_joint1", &tool), Err(ToolError::NameTaken { .. })));
+    for part in [f64::NAN, f64::INFINITY, 1e154] {
+        let far = IsometryMatrix3::translation(0.0, part, 0.0);
+        assert!(matches!(robot.with_tool("panda_hand", "pen", &far), Err(ToolError::Size { .. })), "{part}");
+    }
     let twice = robot.with_tool("panda_hand", "pen", &tool).unwrap().with_tool("pen", "nib", &tool).unwrap();
     assert_eq!(twice.chain("panda_link0", "nib").unwrap().dof(), 7);
 }

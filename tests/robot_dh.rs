@@ -165,10 +165,10 @@ fn everything_that_is_wrong_with_a_table_is_said_with_its_place() {
             "4:1: error: a row has no key `alhpa`; did you mean `alpha`?",
             "5:5: error: `a`: \"pie\", column 1: 'pie' is not known; the only name is pi",
             "7:8: error: `ball` is no kind of joint; rows are `revolute`, `continuous`, `prismatic` or `fixed`",
-            "8:1: error: joint `joint3`: its limits 2 to 1 at a speed of inf let nothing move",
+            "9:10: error: joint `joint3`: its lower limit 2 is greater than its upper limit 1",
             "11:5: error: `d`: 1e7 is beyond any arm; lengths [m] and angles [rad] are at most 1e6 in size",
             "12:10: error: `limits`: expected two numbers, [lower, upper], found the integer `3`",
-            "13:1: error: joint `joint5`: a continuous joint has no limits; make it revolute, or leave them out",
+            "15:10: error: joint `joint5`: a continuous joint has no limits; make it revolute, or leave them out",
         ]
     );
 }
@@ -184,7 +184,17 @@ fn a_table_without_an_arm_says_what_to_write() {
         ("planar = \"long\"", "expected a list of numbers"),
         ("planar = [1, nan]", "this is not a number"),
         ("planar = []", "no row of the table moves"),
-        ("planar = [1]\nlimits = [1, -1]", "let nothing move"),
+        (
+            "planar = [1]\nlimits = [1, -1]",
+            "2:10: error: its lower limit 1 is greater than its upper limit -1",
+        ),
+        ("planar = [1]\nvelocity = 0", "2:12: error: its velocity limit 0 lets it never move"),
+        ("planar = [1]\nbase = \"\"", "2:8: error: `base` is empty"),
+        (
+            "planar = [1]\nbase = \"j1\"\nname = \"a\\u0000\"",
+            r"3:8: error: `name` holds the character `\u{0}`",
+        ),
+        ("planar = [1]\nbase = \"link1\"", "1:10: error: link `link1` is there already"),
         ("convention = \"standard\"\njoint = [3]", "expected rows that are tables"),
         ("convention = \"standard\"\njoint = 3", "each begun by a line [[joint]]"),
         ("convention = \"standard\"\nvelocity = 3\n[[joint]]\na = 1", "belongs into the rows"),
@@ -195,6 +205,38 @@ fn a_table_without_an_arm_says_what_to_write() {
         let found = refusals(text);
         assert!(found.iter().any(|found| found.contains(said)), "{text:?}: {found:?}");
     }
+}
+
+#[test]
+fn names_are_checked_at_their_rows() {
+    let row = "[[joint]]\nlimits = [-1, 1]\n";
+    let text = format!(
+        "convention = \"standard\"\nbase = \"a\\u001b[31mb\\u0000\"\n{row}name = \"one\"\n{row}name = \"one\"\n{row}link = \"\"\n{row}velocity = 0\n"
+    );
+    assert_eq!(
+        refusals(&text),
+        [
+            r"2:8: error: `base` holds the character `\u{1b}`, which no URDF can hold",
+            "14:12: error: joint `joint4`: its velocity limit 0 lets it never move; give a positive one",
+        ],
+        "a base without a name leaves the others open"
+    );
+    let text = text
+        .replace("base = \"a\\u001b[31mb\\u0000\"", "base = \"link4_axis\"")
+        .replace("velocity = 0\n", "link = \"link4\"\n");
+    assert_eq!(
+        refusals(&text),
+        [
+            "6:1: error: joint `one` is there already; every joint needs its own name",
+            "9:1: error: the name of its link is empty",
+            "12:1: error: link `link4_axis` is there already; every link needs its own name",
+        ]
+    );
+    // What a table may be called can be written down and read.
+    let odd = "planar = [1]\nbase = \"a <b> &\\n$\\u009b\"\nname = \"c d\"";
+    let robot = Robot::from_dh(&DhTable::from_toml(odd).unwrap()).unwrap();
+    let again = Robot::from_urdf(&robot.to_urdf().unwrap()).unwrap();
+    assert_eq!((again.name(), again.links()), (robot.name(), robot.links()));
 }
 
 #[test]
@@ -210,7 +252,14 @@ fn a_table_made_by_a_program_is_checked_as_one_from_a_file() {
     assert!(refused(&|table| table.rows[1].kind = JointKind::Floating).contains("can not be floating"));
     assert!(refused(&|table| table.rows[1].joint = "j1".into()).contains("joint `j1` is there already"));
     assert!(refused(&|table| table.rows[1].link = "base".into()).contains("link `base` is there already"));
-    assert!(refused(&|table| table.rows[0].link = " ".into()).contains("empty name"));
+    assert!(refused(&|table| table.rows[0].link = " ".into()).contains("the name of its link is empty"));
+    assert_eq!(
+        refused(&|table| table.base = "\u{0}".into()),
+        r"`base` of the table holds the character `\u{0}`, which no URDF can hold"
+    );
+    assert!(
+        refused(&|table| table.rows[1].limits.upper = f64::NEG_INFINITY).contains("no position lies between")
+    );
 }
 
 #[test]

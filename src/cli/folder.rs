@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::arguments::OutArguments;
 use super::failure::{Exit, Failure};
 use crate::report::{WriteError, write_whole};
+use crate::robot::shown;
 
 /// A folder for results, and whether files in it may be replaced.
 pub(super) struct Folder {
@@ -19,8 +20,18 @@ pub(super) struct Folder {
 impl Folder {
     /// Makes the folder, unless it is there, and refuses before anything is computed if one of `names` is in it.
     pub(super) fn open(path: &Path, replace: bool, names: &[&str]) -> Result<Self, Failure> {
+        Self::named_by("--out", path, replace, names)
+    }
+
+    /// As [`Folder::open`], for the folder that another option names.
+    pub(super) fn named_by(
+        option: &str,
+        path: &Path,
+        replace: bool,
+        names: &[&str],
+    ) -> Result<Self, Failure> {
         if path.exists() && !path.is_dir() {
-            let message = format!("{}: this is a file; --out names a folder", path.display());
+            let message = format!("{}: this is a file; {option} names a folder", shown(path));
             return Err(Failure::new(Exit::File, message).in_file(&path.display().to_string()));
         }
         std::fs::create_dir_all(path)
@@ -88,7 +99,9 @@ pub(super) fn write_file(path: &Path, replace: bool, text: &str) -> Result<(), F
 
 fn failure(error: &WriteError) -> Failure {
     let file = match error {
-        WriteError::Exists(path) | WriteError::Io { path, .. } => path.display().to_string(),
+        WriteError::Exists(path) | WriteError::Folder(path) | WriteError::Io { path, .. } => {
+            path.display().to_string()
+        }
     };
     Failure::new(Exit::File, error.to_string()).in_file(&file)
 }

@@ -67,8 +67,8 @@ fn docs(arguments: &FormulaDocs, output: &mut Output) -> Result<Exit, Failure> {
     let folder = arguments.out.parent().unwrap_or(Path::new(""));
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let name = arguments.out.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let mut written = write_all(folder, arguments.force, &[(name, markdown)])?;
-    written.extend(write_all(&folder.join("pictures"), arguments.force, &pictures)?);
+    let mut written = write_all("--out", folder, arguments.force, &[(name, markdown)])?;
+    written.extend(write_all("--out", &folder.join("pictures"), arguments.force, &pictures)?);
     output.show(&Written { written })?;
     Ok(Exit::Done)
 }

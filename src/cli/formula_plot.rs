@@ -10,6 +10,10 @@ use crate::report::figure::{Figure, comparison, portrait, sheet};
 /// Most steps of a row that is drawn: beyond, pictures are black.
 const MOST_DRAWN: usize = 40;
 
+/// Extensions of pictures that are not drawn: no one means a folder by such a name.
+const OTHER_PICTURES: [&str; 12] =
+    ["png", "pdf", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "eps", "ps", "html"];
+
 /// Draws rows, each by itself; see [`draw`].
 pub(super) fn plot(path: &Path, force: bool, rows: &[(&str, &Analysis)]) -> Result<Vec<String>, Failure> {
     refuse_long(rows)?;
@@ -49,8 +53,18 @@ pub(super) fn draw(
     title: &str,
     figures: &[Figure],
 ) -> Result<Vec<String>, Failure> {
-    let is_page = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
-    if is_page { page(path, force, title, figures) } else { folder(path, force, figures) }
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    if extension == "svg" {
+        return page(path, force, title, figures);
+    }
+    if OTHER_PICTURES.iter().any(|other| extension == *other) && !path.is_dir() {
+        let message = format!(
+            "--plot {}: pictures are drawn as SVG; name a folder, or a file that ends in .svg",
+            path.display()
+        );
+        return Err(Failure::usage(message));
+    }
+    folder(path, force, figures)
 }
 
 fn folder(path: &Path, force: bool, figures: &[Figure]) -> Result<Vec<String>, Failure> {
@@ -61,7 +75,7 @@ fn folder(path: &Path, force: bool, figures: &[Figure]) -> Result<Vec<String>, F
             [(name("svg"), figure.to_svg()), (name("csv"), figure.to_csv())]
         })
         .collect();
-    write_all(path, force, &files)
+    write_all("--plot", path, force, &files)
 }
 
 fn page(path: &Path, force: bool, title: &str, figures: &[Figure]) -> Result<Vec<String>, Failure> {
@@ -77,11 +91,12 @@ fn page(path: &Path, force: bool, title: &str, figures: &[Figure]) -> Result<Vec
     };
     let numbers = figures.iter().flat_map(lines).collect::<Vec<_>>().concat();
     let csv = Path::new(&name).with_extension("csv").to_string_lossy().into_owned();
-    write_all(beside, force, &[(name, sheet(title, figures, 2.min(figures.len()))), (csv, numbers)])
+    write_all("--plot", beside, force, &[(name, sheet(title, figures, 2.min(figures.len()))), (csv, numbers)])
 }
 
-/// Writes files of a folder, and returns their paths.
+/// Writes files into the folder that an option names, and returns their paths.
 pub(super) fn write_all(
+    option: &str,
     path: &Path,
     force: bool,
     files: &[(String, String)],
@@ -93,7 +108,7 @@ pub(super) fn write_all(
         let message = format!("{name} would be written twice; name each formula once");
         return Err(Failure::new(Exit::Usage, message));
     }
-    let folder = Folder::open(path, force, &names)?;
+    let folder = Folder::named_by(option, path, force, &names)?;
     for (name, content) in files {
         folder.write(name, |out| out.write_all(content.as_bytes()))?;
     }

@@ -29,6 +29,7 @@ mod robot_ik;
 mod robot_show;
 mod schema;
 mod share_out;
+mod shell;
 mod sweep;
 
 use std::ffi::OsString;

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::arguments::{Arguments, ColourChoice};
 use super::failure::{Exit, Failure};
 use super::paint::painted;
+use crate::robot::{is_odd, printable};
 
 /// A result that people read as text and programs as JSON.
 pub(super) trait Show: Serialize {
@@ -163,17 +164,18 @@ fn error_document(failure: &Failure) -> Value {
 
 /// `file:line:column: sentence`, and below it the line with a caret.
 fn failure_text(failure: &Failure, painted: bool) -> String {
+    let message = lines(&failure.message);
     let word = if painted { "\u{1b}[1;31merror:\u{1b}[0m" } else { "error:" };
     let Some(place) = &failure.place else {
         return match &failure.file {
-            Some(file) if !failure.message.contains(file.as_str()) => {
-                format!("{word} {file}: {}", failure.message)
+            Some(file) if !message.contains(&*printable(file)) => {
+                format!("{word} {}: {message}", printable(file))
             }
-            _ => format!("{word} {}", failure.message),
+            _ => format!("{word} {message}"),
         };
     };
-    let file = failure.file.as_deref().unwrap_or("scenario");
-    let head = format!("{file}:{}:{}: {word} {}", place.line, place.column, failure.message);
+    let file = printable(failure.file.as_deref().unwrap_or("scenario"));
+    let head = format!("{file}:{}:{}: {word} {message}", place.line, place.column);
     if place.source_line.trim().is_empty() {
         return head;
     }
@@ -183,10 +185,15 @@ fn failure_text(failure: &Failure, painted: bool) -> String {
     format!("{head}\n {number} | {line}\n {indent} | {}^", " ".repeat(source.1))
 }
 
+/// A message of several lines with nothing in them that a terminal would obey.
+fn lines(message: &str) -> String {
+    message.split('\n').map(printable).collect::<Vec<_>>().join("\n")
+}
+
 /// Returns the part of a line around a column, and how far the caret stands in.
 fn excerpt(line: &str, column: usize) -> (String, usize) {
     const WIDTH: usize = 90;
-    let plain: Vec<char> = line.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let plain: Vec<char> = line.chars().map(|c| if is_odd(c) { ' ' } else { c }).collect();
     let caret = column.saturating_sub(1).min(plain.len());
     let start = if plain.len() <= WIDTH { 0 } else { caret.saturating_sub(WIDTH / 2) };
     let end = (start + WIDTH).min(plain.len());

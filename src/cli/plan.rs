@@ -8,6 +8,7 @@ use super::failure::{Exit, Failure};
 use super::output::Output;
 use super::progress::Progress;
 use super::results::{Results, Story};
+use super::shell::{option, quoted};
 use crate::math::figure;
 use crate::planner::{Plan, PlanStatus, Planner};
 use crate::report::{PlanFormat, PlanJson, PlanText, Suggestion, plan_details, suggestions};
@@ -172,9 +173,19 @@ fn exit(plan: &Plan) -> Exit {
     }
 }
 
+/// What was laid over the scenario and what these arguments do not set anew, as arguments.
+fn still_set(arguments: &PlanArguments, next: &str) -> String {
+    let is_set_anew = |set: &str| {
+        let key = set.split('=').next().unwrap_or_default().trim();
+        next.contains(&format!("--set {key}="))
+    };
+    arguments.set.iter().filter(|set| !is_set_anew(set)).map(|set| option("--set", set)).collect()
+}
+
 /// Where the files are, and what to try next.
 fn closing(arguments: &PlanArguments, names: &[String], suggested: Vec<Suggestion>) -> String {
-    let name = arguments.scenario.as_ref().map_or_else(String::new, |file| format!(" {}", file.display()));
+    let name = arguments.scenario.as_ref().map(|file| quoted(&file.display().to_string()));
+    let name = name.map_or_else(String::new, |name| format!(" {name}"));
     let mut next = Vec::new();
     let mut written = String::new();
     match &arguments.written.out {
@@ -187,10 +198,16 @@ fn closing(arguments: &PlanArguments, names: &[String], suggested: Vec<Suggestio
         }
     }
     next.extend(suggested);
-    let line = |next: Suggestion| [format!("kinstep plan{name} {}", next.arguments), next.reason];
+    let line = |next: Suggestion| {
+        let set = still_set(arguments, &next.arguments);
+        [format!("kinstep plan{name}{set} {}", next.arguments), next.reason]
+    };
     let mut lines: Vec<[String; 2]> = next.into_iter().map(line).collect();
     if let Some(folder) = arguments.written.out.as_ref().filter(|_| !arguments.figures) {
-        lines.push([format!("kinstep plot {}", folder.display()), "its pictures".to_owned()]);
+        lines.push([
+            format!("kinstep plot {}", quoted(&folder.display().to_string())),
+            "its pictures".to_owned(),
+        ]);
     }
     if arguments.scenario.is_none() {
         lines.push(["kinstep schema scenario", "every key of a scenario of your own"].map(str::to_owned));

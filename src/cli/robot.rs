@@ -9,10 +9,14 @@ use super::arguments::{ChainArguments, KinematicsArguments, RobotCommand, RobotF
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
 use super::robot_show::RobotCard;
+use super::shell::{option, quoted};
 use super::{formula_plot, robot_export, robot_ik};
 use crate::report::Table;
 use crate::report::figure::robot_figures;
-use crate::robot::{Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded};
+use crate::robot::{
+    Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded, printable, quote,
+    unbelievable,
+};
 use crate::scenario::{RobotSource, calibrated, evaluate, suggestion, tool_name};
 
 pub(super) fn run(command: &RobotCommand, output: &mut Output) -> Result<Exit, Failure> {
@@ -31,18 +35,37 @@ fn options(file: &RobotFile) -> UrdfOptions {
     UrdfOptions { assume_unlimited: file.assume_unlimited, strict: file.strict, ..UrdfOptions::default() }
 }
 
+/// Returns the robot and what was asked to be done to it, as words of a command.
+pub(super) fn robot_words(file: &RobotFile) -> String {
+    let mut words = quoted(&file.robot);
+    if file.assume_unlimited {
+        words += " --assume-unlimited";
+    }
+    if file.strict {
+        words += " --strict";
+    }
+    if let Some(calibration) = &file.calibration {
+        words += &option("--calibration", &calibration.display().to_string());
+    }
+    file.lock.iter().for_each(|lock| words += &option("--lock", lock));
+    words
+}
+
 /// Reads a robot, calibrates it and holds its locked joints; with `--verbose`, what was found in the file is said.
 pub(super) fn read(file: &RobotFile, output: &Output) -> Result<Robot, Failure> {
     let source = RobotSource::find(&file.robot, None)?;
     let robot = source.read(&options(file)).map_err(|e| source.refusal(&e))?;
     if output.is_verbose() {
-        robot.diagnostics().iter().for_each(|found| output.remark(&format!("{}:{found}", source.label())));
+        robot
+            .diagnostics()
+            .iter()
+            .for_each(|found| output.remark(&format!("{}:{found}", printable(&source.label()))));
     }
-    edited(robot, file)
+    edited(robot, file, output)
 }
 
 /// Returns the robot with the calibration and the locks that were asked for.
-fn edited(robot: Robot, file: &RobotFile) -> Result<Robot, Failure> {
+fn edited(robot: Robot, file: &RobotFile, output: &Output) -> Result<Robot, Failure> {
     let mut robot = robot;
     if let Some(calibration) = &file.calibration {
         robot = calibrated(&robot, calibration)?;
@@ -54,7 +77,15 @@ fn edited(robot: Robot, file: &RobotFile) -> Result<Robot, Failure> {
         let values = pose_numbers("--lock", lock, values)?;
         let refuse =
             |e: crate::robot::LockError| Failure::new(Exit::Robot, e.to_string()).in_file(&file.robot);
-        robot = robot.with_locked(joint.trim(), &values).map_err(refuse)?;
+        let joint = joint.trim();
+        let locked = robot.with_locked(joint, &values).map_err(refuse)?;
+        if let Some(left) = robot.joint_followed_by(joint) {
+            let (joint, left) = (quote(joint), quote(&left.name));
+            output.aside(&format!(
+                "note: joint {joint} is locked and follows {left} no longer; {left} moves without it"
+            ));
+        }
+        robot = locked;
     }
     Ok(robot)
 }
@@ -70,7 +101,7 @@ fn show(arguments: &RobotShow, output: &mut Output) -> Result<Exit, Failure> {
     let robot = read(&arguments.file, output)?;
     let positions = all_positions(arguments.q.as_deref(), &robot)?;
     let Some(path) = &arguments.plot else {
-        return output.show(&RobotCard::new(&robot, &arguments.file.robot)).map(|()| Exit::Done);
+        return output.show(&RobotCard::new(&robot, robot_words(&arguments.file))).map(|()| Exit::Done);
     };
     let figures = robot_figures(&robot, &positions);
     let written = formula_plot::draw(path, arguments.force, robot.name(), &figures)?;
@@ -97,12 +128,17 @@ fn all_positions(text: Option<&str>, robot: &Robot) -> Result<Vec<f64>, Failure>
         let message = format!("--q: expected {count} ({names}), or some of them as NAME=VALUE, got {got}");
         return Err(Failure::usage(message));
     }
+    let mut given: Vec<&str> = Vec::new();
     for (part, name) in parts.iter().zip(moving.iter().copied().chain(std::iter::repeat(""))) {
         let (name, value) = part.split_once('=').map_or((name, *part), |(name, value)| (name.trim(), value));
         if !moving.contains(&name) {
             let hint = suggestion(name, moving.iter().copied());
             return Err(Failure::usage(format!("--q: no joint \"{name}\" moves on its own; {hint}")));
         }
+        if given.contains(&name) {
+            return Err(Failure::usage(format!("--q {text}: joint {} is given twice", quote(name))));
+        }
+        given.push(name);
         let value = evaluate(value).map_err(|e| Failure::usage(format!("--q {text}: {e}")))?;
         if let Some(index) = place(name) {
             positions[index] = value;
@@ -191,7 +227,7 @@ fn check(file: &RobotFile, output: &mut Output) -> Result<Exit, Failure> {
     let source = RobotSource::find(&file.robot, None)?;
     let (found, joints, links) = match source.read(&options(file)) {
         Ok(robot) => {
-            edited(robot.clone(), file)?;
+            edited(robot.clone(), file, output)?;
             let joints = robot.joints().iter().map(|joint| joint.name.clone()).collect();
             (robot.diagnostics().to_vec(), joints, robot.links().len())
         }
@@ -202,7 +238,7 @@ fn check(file: &RobotFile, output: &mut Output) -> Result<Exit, Failure> {
     let problems = found.iter().map(Problem::from).collect();
     if output.is_quiet() {
         let grave = found.iter().filter(|problem| problem.severity != Severity::Note);
-        grave.for_each(|problem| output.remark(&format!("{}:{problem}", source.label())));
+        grave.for_each(|problem| output.remark(&format!("{}:{problem}", printable(&source.label()))));
     }
     output.show(&CheckResult { ok, problems, joints, links, label: source.label() })?;
     Ok(if ok { Exit::Done } else { Exit::Robot })
@@ -217,16 +253,16 @@ fn found_in(error: &ReadError) -> Vec<Diagnostic> {
 impl Show for CheckResult {
     fn text(&self) -> String {
         let mut text = String::new();
+        let label = printable(&self.label);
         for Problem { severity, line, column, message } in &self.problems {
-            let _ = writeln!(text, "{}:{line}:{column}: {severity}: {message}", self.label);
+            let _ = writeln!(text, "{label}:{line}:{column}: {severity}: {message}");
         }
         let count = |severity| self.problems.iter().filter(|problem| problem.severity == severity).count();
         let verdict = if self.ok { "usable" } else { "defective" };
         let (errors, warnings, notes) = (count("error"), count("warning"), count("note"));
         let _ = writeln!(
             text,
-            "{}: {verdict}; {} links, {} joints; {errors} errors, {warnings} warnings, {notes} notes",
-            self.label,
+            "{label}: {verdict}; {} links, {} joints; {errors} errors, {warnings} warnings, {notes} notes",
             self.links,
             self.joints.len()
         );
@@ -260,7 +296,8 @@ impl Kinematics {
         let rotation = pose.rotation.matrix();
         let numbers = pose.translation.vector.iter().chain(rotation).chain(columns.iter().flatten());
         if !numbers.copied().all(f64::is_finite) {
-            let message = format!("the pose of `{tip}` at these positions is too large to be computed");
+            let message =
+                format!("the pose of {} at these positions is too large to be computed", quote(&tip));
             return Err(Failure::new(Exit::Robot, message).in_file(&file.robot));
         }
         Ok(Self {
@@ -289,7 +326,7 @@ pub(super) fn tooled_chain(arguments: &ChainArguments, output: &Output) -> Resul
 /// Returns the robot with a tool on `tip`, and the link at which the chain then ends.
 fn tooled(robot: Robot, tip: &str, tool: Option<&str>) -> Result<(Robot, String), Failure> {
     let Some(text) = tool.filter(|_| robot.link(tip).is_some()) else { return Ok((robot, tip.to_owned())) };
-    let numbers = pose_numbers("--tool", text, text)?;
+    let numbers = believable("--tool", pose_numbers("--tool", text, text)?)?;
     let [x, y, z, roll, pitch, yaw] = numbers[..] else {
         let got = numbers.len();
         return Err(Failure::usage(format!("--tool: expected 6 numbers x y z roll pitch yaw, got {got}")));
@@ -307,6 +344,14 @@ pub(super) fn joint_positions(option: &str, text: Option<&str>, chain: &Chain) -
     let values = if text.trim().is_empty() { Vec::new() } else { numbers(option, text)? };
     chain.check_positions(&values).map_err(|e| Failure::usage(format!("{option}: {e}")))?;
     Ok(values)
+}
+
+/// Refuses lengths and angles that no arm has.
+pub(super) fn believable(option: &str, values: Vec<f64>) -> Result<Vec<f64>, Failure> {
+    match values.iter().find_map(|&value| unbelievable(value)) {
+        Some(problem) => Err(Failure::usage(format!("{option}: {problem}"))),
+        None => Ok(values),
+    }
 }
 
 /// Reads numbers or expressions in pi, separated by commas.

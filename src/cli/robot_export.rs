@@ -7,6 +7,7 @@ use super::failure::{Exit, Failure};
 use super::folder::write_file;
 use super::output::Output;
 use super::robot::read;
+use crate::robot::shown;
 
 pub(super) fn run(arguments: &RobotExport, output: &mut Output) -> Result<Exit, Failure> {
     let robot = read(&arguments.file, output)?;
@@ -19,7 +20,7 @@ pub(super) fn run(arguments: &RobotExport, output: &mut Output) -> Result<Exit, 
             if output.wants_json() {
                 output.json(&serde_json::json!({ "written": path.display().to_string() }))?;
             } else {
-                output.aside(&format!("wrote {}", path.display()));
+                output.aside(&format!("wrote {}", shown(path)));
             }
         }
         _ if output.wants_json() => output.json(&serde_json::json!({ "urdf": text }))?,

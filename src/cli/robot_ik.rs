@@ -8,13 +8,11 @@ use serde::Serialize;
 use super::arguments::{ChainArguments, InverseArguments};
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
-use super::robot::{joint_positions, numbers, tooled_chain};
+use super::robot::{believable, joint_positions, numbers, robot_words, tooled_chain};
+use super::shell::option;
 use crate::inverse::{Search, Solution, Target};
 use crate::report::{Table, short};
 use crate::robot::Chain;
-
-/// Largest length \[m\] or angle \[rad\] that is believed.
-const MAX_SIZE: f64 = 1e6;
 
 /// Below this a position counts as zero in the text [rad or m]: no double that stands beside a 1 has a place for it.
 const NOTHING: f64 = 1e-16;
@@ -32,7 +30,7 @@ pub(super) fn run(arguments: &InverseArguments, output: &mut Output) -> Result<E
 }
 
 fn target(arguments: &InverseArguments) -> Result<Target, Failure> {
-    let position = believable("--position", &arguments.position)?;
+    let position = sizes("--position", &arguments.position)?;
     let place = match position[..] {
         [x, y] if arguments.orientation.is_none() && arguments.axis.is_none() => {
             return Ok(Target::position_xy(x, y));
@@ -59,7 +57,7 @@ fn target(arguments: &InverseArguments) -> Result<Target, Failure> {
 }
 
 fn direction(text: &str) -> Result<Unit<Vector3<f64>>, Failure> {
-    let axis = believable("--axis", text)?;
+    let axis = sizes("--axis", text)?;
     let &[x, y, z] = &axis[..] else { return Err(expected("--axis", "three numbers", &axis)) };
     Unit::try_new(Vector3::new(x, y, z), f64::MIN_POSITIVE).ok_or_else(|| {
         Failure::usage(format!("--axis {text}: it points nowhere; give a direction such as 0,0,-1"))
@@ -67,7 +65,7 @@ fn direction(text: &str) -> Result<Unit<Vector3<f64>>, Failure> {
 }
 
 fn rotation(text: &str) -> Result<Rotation3<f64>, Failure> {
-    let given = believable("--orientation", text)?;
+    let given = sizes("--orientation", text)?;
     match given[..] {
         [roll, pitch, yaw] => Ok(Rotation3::from_euler_angles(roll, pitch, yaw)),
         [x, y, z, w] => {
@@ -93,12 +91,9 @@ fn expected(option: &str, wanted: &str, got: &[f64]) -> Failure {
     Failure::usage(format!("{option}: expected {wanted}, got {}", got.len()))
 }
 
-fn believable(option: &str, text: &str) -> Result<Vec<f64>, Failure> {
-    let values = numbers(option, text)?;
-    match values.iter().find(|value| !(value.abs() <= MAX_SIZE)) {
-        Some(value) => Err(Failure::usage(format!("{option}: {} is beyond any arm", short(*value)))),
-        None => Ok(values),
-    }
+/// Reads lengths or angles that an arm may have.
+fn sizes(option: &str, text: &str) -> Result<Vec<f64>, Failure> {
+    believable(option, numbers(option, text)?)
 }
 
 /// Where the search ended; a limit that is not known is null.
@@ -150,18 +145,12 @@ fn or_zero(number: f64) -> f64 {
 /// The command that gives the pose at the joint positions `q` of the same chain.
 fn again(chain: &ChainArguments, q: &str) -> String {
     let ChainArguments { file, base, tip, tool } = chain;
-    let mut command = format!("kinstep robot fk {} --base {base} --tip {tip}", file.robot);
-    if let Some(calibration) = &file.calibration {
-        let _ = write!(command, " --calibration {}", calibration.display());
-    }
-    for lock in &file.lock {
-        let _ = write!(command, " --lock {lock}");
-    }
+    let mut command = format!("kinstep robot fk {}", robot_words(file));
+    command += &(option("--base", base) + &option("--tip", tip));
     if let Some(tool) = tool {
-        let _ = write!(command, " --tool '{tool}'");
+        command += &option("--tool", tool);
     }
-    let _ = write!(command, " --q={q}");
-    command
+    command + &format!(" --q={q}")
 }
 
 impl Show for Answer {

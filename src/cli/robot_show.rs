@@ -1,13 +1,22 @@
 //! `kinstep robot show`: the tree as people draw it, the chains through it, and what to ask next.
 
+use std::collections::HashSet;
 use std::fmt::Write;
 
 use serde::Serialize;
 
 use super::output::Show;
 use super::robot::Problem;
+use super::shell::{option, quoted};
 use crate::report::{Table, short};
-use crate::robot::{Chain, Joint, JointKind, Link, Robot};
+use crate::robot::{Chain, Joint, JointKind, Link, Robot, printable, quote};
+
+/// Most chains that are listed.
+const MOST_CHAINS: usize = 50;
+/// How many branches of branches are set in.
+const MOST_BRANCHES: usize = 20;
+/// Most joint positions in a command that is suggested.
+const MOST_POSITIONS: usize = 100;
 
 /// A robot as people and programs look at it.
 #[derive(Serialize)]
@@ -17,12 +26,16 @@ pub(super) struct RobotCard {
     roots: Vec<String>,
     tips: Vec<String>,
     joints: Vec<JointLine>,
+    /// The first of the chains; all of many would fill pages, and each has as many joints as it is long.
     chains: Vec<ChainLine>,
+    /// How many more there are.
+    more_chains: usize,
     problems: Vec<Problem>,
     #[serde(skip)]
     rows: Vec<Row>,
+    /// The robot and what was done to it, as words of a command.
     #[serde(skip)]
-    label: String,
+    asked: String,
 }
 
 /// One joint of a robot; a limit that is not known is null.
@@ -58,7 +71,8 @@ struct Row {
 }
 
 impl RobotCard {
-    pub(super) fn new(robot: &Robot, label: &str) -> Self {
+    pub(super) fn new(robot: &Robot, asked: String) -> Self {
+        let (chains, more_chains) = chains(robot);
         let names = |links: Vec<&Link>| links.iter().map(|link| link.name.clone()).collect();
         Self {
             name: robot.name().to_owned(),
@@ -66,10 +80,11 @@ impl RobotCard {
             roots: names(robot.roots().collect()),
             tips: names(robot.leaves().collect()),
             joints: robot.joints().iter().map(|joint| JointLine::new(robot, joint)).collect(),
-            chains: chains(robot),
+            chains,
+            more_chains,
             problems: robot.diagnostics().iter().map(Problem::from).collect(),
             rows: rows(robot),
-            label: label.to_owned(),
+            asked,
         }
     }
 }
@@ -91,20 +106,40 @@ impl JointLine {
     }
 }
 
-/// The chains that something moves: to every tip from the link furthest above it that a chain reaches.
-fn chains(robot: &Robot) -> Vec<ChainLine> {
-    let passable = |joint: &Joint| joint.kind.is_supported() && joint.defect.is_none();
-    let line = |tip: &Link| {
-        let mut base = tip;
-        while let Some(joint) =
-            base.parent_joint.map(|joint| &robot.joints()[joint]).filter(|own| passable(own))
-        {
-            base = &robot.links()[joint.parent];
-        }
-        let chain = robot.chain(&base.name, &tip.name).ok().filter(|chain| chain.dof() > 0)?;
+/// The chains that something moves: to every tip from the link furthest above it that a chain reaches; and how many there
+/// are beyond those that are listed.
+fn chains(robot: &Robot) -> (Vec<ChainLine>, usize) {
+    // Parents stand before their children: what is known of a parent is known of the way to its child.
+    let mut ways: Vec<Way> = Vec::with_capacity(robot.links().len());
+    let is_sound = |joint: &Joint| {
+        let links = [joint.parent, joint.child].map(|link| &robot.links()[link]);
+        joint.defect.is_none() && links.iter().all(|link| link.defect.is_none())
+    };
+    for (index, link) in robot.links().iter().enumerate() {
+        let joint = link.parent_joint.map(|joint| &robot.joints()[joint]);
+        let passed = joint.filter(|joint| joint.kind.is_supported() && is_sound(joint));
+        ways.push(passed.map_or(Way { base: index, moves: false }, |joint| {
+            let above = &ways[joint.parent];
+            Way { base: above.base, moves: above.moves || joint.kind.is_movable() }
+        }));
+    }
+    let ends = robot.links().iter().zip(&ways).filter(|(_, way)| way.moves);
+    let is_tip: HashSet<&str> = robot.leaves().map(|link| link.name.as_str()).collect();
+    let mut ends = ends.filter(|(link, _)| is_tip.contains(link.name.as_str()));
+    let line = |(tip, way): (&Link, &Way)| {
+        let chain = robot.chain(&robot.links()[way.base].name, &tip.name).ok()?;
         Some(ChainLine::new(&chain))
     };
-    robot.leaves().filter_map(line).collect()
+    let listed = ends.by_ref().filter_map(line).take(MOST_CHAINS).collect();
+    (listed, ends.count())
+}
+
+/// How a link is reached from above.
+struct Way {
+    /// Index of the link furthest above that a chain reaches.
+    base: usize,
+    /// Whether anything moves in between.
+    moves: bool,
 }
 
 impl ChainLine {
@@ -126,7 +161,8 @@ fn near_zero((lower, upper): (f64, f64)) -> f64 {
     if lower <= 0.0 && 0.0 <= upper || !middle.is_finite() { 0.0 } else { (middle * 100.0).round() / 100.0 }
 }
 
-/// Draws the tree: branches where a link has several children, and one below the other where it has one.
+/// Draws the tree: branches where a link has several children, and one below the other where it has one. Branches of
+/// branches are set in to a bound; beyond it the link is named that such a branch is on.
 fn rows(robot: &Robot) -> Vec<Row> {
     let mut children = vec![0_usize; robot.links().len()];
     robot.joints().iter().for_each(|joint| children[joint.parent] += 1);
@@ -134,15 +170,20 @@ fn rows(robot: &Robot) -> Vec<Row> {
     let mut indents = vec![String::new(); robot.links().len()];
     let mut drawn = Vec::with_capacity(robot.links().len());
     for (index, row) in robot.tree().enumerate() {
-        let joint = row.link.parent_joint;
+        let (joint, name) = (row.link.parent_joint, &row.link.name);
         let above = joint.map(|joint| robot.joints()[joint].parent);
         let indent = above.map_or_else(String::new, |above| indents[above].clone());
-        let (mark, below) = match above {
-            Some(above) if children[above] > 1 && row.is_last => ("└ ", "  "),
-            Some(above) if children[above] > 1 => ("├ ", "│ "),
-            _ => ("", ""),
+        let is_deep = indent.chars().count() >= 2 * MOST_BRANCHES;
+        let branched = above.filter(|&above| children[above] > 1);
+        let (mark, below) = match branched {
+            Some(_) if is_deep => ("… ", ""),
+            Some(_) if row.is_last => ("└ ", "  "),
+            Some(_) => ("├ ", "│ "),
+            None => ("", ""),
         };
-        drawn.push(Row { drawn: format!("{indent}{mark}{}", row.link.name), joint });
+        let far = branched.filter(|&above| is_deep && above + 1 != index);
+        let on = far.map_or_else(String::new, |above| format!(" (on {})", robot.links()[above].name));
+        drawn.push(Row { drawn: format!("{indent}{mark}{name}{on}"), joint });
         indents[index] = format!("{indent}{below}");
     }
     drawn
@@ -158,11 +199,18 @@ impl Show for RobotCard {
         if !self.chains.is_empty() {
             let _ = write!(text, "\n{}", self.chain_table());
         }
+        if self.more_chains > 0 {
+            let (more, asked) = (self.more_chains, &self.asked);
+            let _ = writeln!(
+                text,
+                "and {more} more; one of them: kinstep robot jacobian {asked} --base LINK --tip LINK"
+            );
+        }
         self.suggest(&mut text);
         let loud = self.problems.iter().filter(|problem| problem.severity != "note").count();
         if loud > 0 {
             let count = if loud == 1 { "1 problem".to_owned() } else { format!("{loud} problems") };
-            let _ = writeln!(text, "\n{count} in the file: see `kinstep robot check {}`.", self.label);
+            let _ = writeln!(text, "\n{count} in the file: see `kinstep robot check {}`.", self.asked);
         }
         text
     }
@@ -180,7 +228,8 @@ impl RobotCard {
             1 => "1 joint that moves".to_owned(),
             n => format!("{n} joints that move"),
         };
-        format!("{}: {} links, {moving}{following}, {fixed} fixed", self.name, self.links.len())
+        let (name, links) = (printable(&self.name), self.links.len());
+        format!("{name}: {links} links, {moving}{following}, {fixed} fixed")
     }
 
     fn tree(&self) -> Table {
@@ -219,16 +268,17 @@ impl RobotCard {
     /// Says what can be asked next, with a command that works as it stands.
     fn suggest(&self, text: &mut String) {
         let reach = |chain: &&ChainLine| chain.reach.unwrap_or(0.0);
-        let most = self.chains.iter().rev().max_by(|a, b| reach(a).total_cmp(&reach(b)));
+        let short = self.chains.iter().filter(|chain| chain.dof <= MOST_POSITIONS);
+        let most = short.rev().max_by(|a, b| reach(a).total_cmp(&reach(b)));
         if let Some(chain) = most {
             let q: Vec<String> = chain.q.iter().map(f64::to_string).collect();
             let _ = writeln!(
                 text,
                 "\nAny two links are base and tip of a chain, in either direction, for example:\n  \
-                 kinstep robot jacobian {} --base {} --tip {} --q={}",
-                quoted(&self.label),
-                quoted(&chain.base),
-                quoted(&chain.tip),
+                 kinstep robot jacobian {}{}{} --q={}",
+                self.asked,
+                option("--base", &chain.base),
+                option("--tip", &chain.tip),
                 q.join(",")
             );
         }
@@ -236,10 +286,10 @@ impl RobotCard {
         if let Some(free) = self.joints.iter().find(is_free) {
             let _ = writeln!(
                 text,
-                "\nNo chain passes through `{}`, which is {}, unless it is held still: --lock {}=0",
-                free.name,
+                "\nNo chain passes through {}, which is {}, unless it is held still: --lock {}",
+                quote(&free.name),
                 free.kind,
-                quoted(&free.name)
+                quoted(&format!("{}=0", free.name))
             );
         }
     }
@@ -250,15 +300,5 @@ fn between(names: &[String]) -> String {
     match names {
         [first, .., last] if names.len() > 3 => format!("{first} ... {last}"),
         _ => names.join(", "),
-    }
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "_-./:+@%,".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }

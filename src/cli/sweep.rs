@@ -13,6 +13,7 @@ use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
 use super::plot;
 use super::progress::Progress;
+use super::shell::quoted;
 use crate::report::{WriteError, write_whole};
 use crate::scenario::{FormulaRows, ScenarioText};
 use crate::study::sweep::{self, Axis, Sweep, SweepError, Swept, Table};
@@ -44,7 +45,8 @@ impl Show for Summary {
             let _ = writeln!(text, "Written to {}.", self.out);
             self.drawn.iter().for_each(|file| _ = writeln!(text, "  {file}"));
             if self.drawn.is_empty() {
-                let _ = writeln!(text, "\nNext:\n  kinstep plot {}  # the table as pictures", self.out);
+                let _ =
+                    writeln!(text, "\nNext:\n  kinstep plot {}  # the table as pictures", quoted(&self.out));
             }
         } else {
             text.push_str("Interrupted; the same command goes on from here.\n");

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::robot::printable;
+
 /// Rows of text in aligned columns: the first column to the left, numbers to the right.
 ///
 /// ```
@@ -22,9 +24,10 @@ impl Table {
         table
     }
 
-    /// Adds a row.
+    /// Adds a row. What a terminal would obey, a name with a line's end in it for one, is written by its number.
     pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) -> &mut Self {
-        self.rows.push(cells.into_iter().map(Into::into).collect());
+        let shown = |cell: S| printable(&cell.into()).into_owned();
+        self.rows.push(cells.into_iter().map(shown).collect());
         self
     }
 

@@ -6,7 +6,8 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 use thiserror::Error;
 
 use super::displacement::displacement;
-use super::toml_table::{Entries, MAX_SIZE, read_toml, wrong_type};
+use super::size::MAX_SIZE;
+use super::toml_table::{Entries, read_toml, wrong_type};
 use super::urdf::report::Report;
 use super::{Defect, Diagnostic, JointKind, Robot, diagnostic, names};
 
@@ -200,6 +201,7 @@ impl Robot {
             self.check_correction(index, correction, line)?;
             robot.correct(index, correction);
         }
+        robot.fold_followers();
         Ok(robot)
     }
 
@@ -251,10 +253,10 @@ impl Robot {
         joint.axis *= sign;
         let ends = [joint.limits.lower, joint.limits.upper].map(|end| sign * (end - zero));
         (joint.limits.lower, joint.limits.upper) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-        for mimic in self.joints.iter_mut().filter_map(|joint| joint.mimic.as_mut()) {
-            if mimic.driver == index {
-                mimic.offset += mimic.multiplier * zero;
-                mimic.multiplier *= sign;
+        for follows in self.joints.iter_mut().filter_map(|joint| joint.follows.as_mut()) {
+            if follows.driver == index {
+                follows.offset += follows.multiplier * zero;
+                follows.multiplier *= sign;
             }
         }
     }

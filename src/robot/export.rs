@@ -85,7 +85,7 @@ impl Robot {
             let _ = writeln!(text, "    <axis xyz=\"{}\"/>", numbers(joint.axis.as_slice()));
         }
         write_limits(text, joint);
-        if let Some(mimic) = joint.mimic {
+        if let Some(mimic) = joint.follows {
             let driver = escaped(&self.joints[mimic.driver].name);
             let (multiplier, offset) = (number(mimic.multiplier), number(mimic.offset));
             let _ = writeln!(
@@ -147,7 +147,7 @@ fn escaped(name: &str) -> String {
                 let _ = write!(text, "&#{};", u32::from(c));
             }
             // No reader accepts the other control characters; a name with them can only have been made by a program.
-            c if c < ' ' => text.push(char::REPLACEMENT_CHARACTER),
+            c if !names::is_of_xml(c) => text.push(char::REPLACEMENT_CHARACTER),
             c => text.push(c),
         }
     }

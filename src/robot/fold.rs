@@ -1,5 +1,7 @@
 //! From the joints along a path to constants and motions about z.
 
+use std::collections::{HashMap, HashSet};
+
 use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Translation3, Vector3};
 
 use super::chain::Place;
@@ -109,34 +111,39 @@ fn reach(moving: &[Moving], last: &IsometryMatrix3<f64>, joints: &[ChainJoint]) 
 /// The columns of the chain in path order: every joint that moves on its own has its place; a joint that is followed
 /// from elsewhere takes the place of the first of its followers.
 struct Columns {
-    drivers: Vec<usize>,
+    /// The column of each joint that has one, by the joint's index.
+    of_driver: HashMap<usize, usize>,
     joints: Vec<ChainJoint>,
 }
 
 impl Columns {
     fn of(robot: &Robot, steps: &[Step]) -> Self {
         let movable = || steps.iter().map(|step| step.joint).filter(|&i| robot.joints[i].kind.is_movable());
-        let is_on_path = |driver: usize| movable().any(|index| index == driver);
-        let mut drivers = Vec::new();
+        let on_path: HashSet<usize> = movable().collect();
+        let mut columns = Self { of_driver: HashMap::new(), joints: Vec::new() };
         for index in movable() {
             let driver = robot.joints[index].mimic.map_or(index, |mimic| mimic.driver);
-            let has_own_place = driver != index && is_on_path(driver);
-            if !has_own_place && !drivers.contains(&driver) {
-                drivers.push(driver);
+            let has_own_place = driver != index && on_path.contains(&driver);
+            if !has_own_place {
+                columns.open(robot, driver);
             }
         }
-        let joint = |&driver: &usize| {
+        columns
+    }
+
+    fn open(&mut self, robot: &Robot, driver: usize) {
+        self.of_driver.entry(driver).or_insert_with(|| {
             let Joint { name, kind, limits, .. } = &robot.joints[driver];
-            ChainJoint { name: name.clone(), kind: *kind, limits: *limits }
-        };
-        Self { joints: drivers.iter().map(joint).collect(), drivers }
+            self.joints.push(ChainJoint { name: name.clone(), kind: *kind, limits: *limits });
+            self.joints.len() - 1
+        });
     }
 
     /// Returns the column of a joint of the path: its own, or that of the joint it follows.
     fn place(&mut self, robot: &Robot, index: usize) -> Result<usize, ChainError> {
         let joint = &robot.joints[index];
         let driver = joint.mimic.map_or(index, |mimic| mimic.driver);
-        let known = self.drivers.iter().position(|&known| known == driver);
+        let known = self.of_driver.get(&driver).copied();
         let column = known.expect("every driver of the path was given a column");
         let limits = &mut self.joints[column].limits;
         *limits = narrowed(*limits, joint);

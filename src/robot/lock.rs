@@ -4,6 +4,7 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 use thiserror::Error;
 
 use super::displacement::displacement;
+use super::size::unbelievable;
 use super::{Defect, Joint, JointKind, Limits, Robot, names};
 
 /// Why a joint can not be locked.
@@ -56,6 +57,24 @@ pub enum LockError {
         /// The largest allowed.
         upper: f64,
     },
+    /// A pose that the joint can not take.
+    #[error("joint {} can not be locked there: it is {kind}, and {problem}", names::quote(.joint))]
+    Pose {
+        /// The joint.
+        joint: String,
+        /// Its type.
+        kind: JointKind,
+        /// What the pose asks too much.
+        problem: &'static str,
+    },
+    /// A position, or a number of a pose, that no arm has.
+    #[error("joint {} can not be locked there: {problem}", names::quote(.joint))]
+    Size {
+        /// The joint, or one that follows it.
+        joint: String,
+        /// What is wrong with the number.
+        problem: String,
+    },
     /// A position at which a joint that follows would leave its own limits.
     #[error("joint {} can not be locked at {position}: {}, which follows it, would stand at {value}, and moves between \
              {lower} and {upper}", names::quote(.joint), names::quote(.follower))]
@@ -85,15 +104,16 @@ fn wanted(kind: JointKind) -> &'static str {
 
 impl Robot {
     /// Returns the robot with a joint held still: chains pass through it as through a fixed joint, and joints that
-    /// follow it stand still with it.
+    /// follow it, at first hand or through others, stand still with it. A joint that follows another follows it no longer
+    /// once it is held: the other moves on without it.
     ///
     /// A joint with one degree of freedom is held at one position \[rad\] or \[m\], within its limits. A floating, planar
     /// or spherical joint is held at the pose of its child, `x y z roll pitch yaw` \[m, rad\] as in URDF, after its
     /// origin; the single number 0 is the pose that moves nothing.
     ///
     /// # Errors
-    /// [`LockError`]: no such joint (with the nearest names), a defective or a fixed one, too few or too many numbers, or
-    /// a position outside its limits or those of a joint that follows it.
+    /// [`LockError`]: no such joint (with the nearest names), a defective or a fixed one, too few or too many numbers, a
+    /// position outside its limits or those of a joint that follows it, or a number beyond any arm.
     ///
     /// ```
     /// use kinstep::robot::embedded;
@@ -119,21 +139,28 @@ impl Robot {
         Ok(robot)
     }
 
-    /// Fixes the joints that follow a joint which stands at `position`.
+    /// Fixes the joints that follow a joint which stands at `position`, at first hand or through others.
     fn still_followers(&mut self, driver: usize, position: f64) -> Result<(), LockError> {
-        let name = self.joints[driver].name.clone();
-        for joint in &mut self.joints {
-            let Some(mimic) = joint.mimic.filter(|mimic| mimic.driver == driver) else { continue };
-            let own = mimic.multiplier * position + mimic.offset;
-            let Limits { lower, upper, .. } = joint.limits;
-            // The follower's position carries the rounding of its ratio.
-            let slack = 1e-12 * own.abs().max(1.0);
-            if !(lower - slack <= own && own <= upper + slack) {
-                let (joint, follower) = (name, joint.name.clone());
-                return Err(LockError::Follower { joint, position, follower, value: own, lower, upper });
+        let followers = self.followers();
+        let mut standing = vec![(driver, position)];
+        while let Some((followed, at)) = standing.pop() {
+            for &index in &followers[followed] {
+                let joint = &self.joints[index];
+                let own = joint.follows.map_or(0.0, |follows| follows.multiplier * at + follows.offset);
+                let Limits { lower, upper, .. } = joint.limits;
+                // The follower's position carries the rounding of its ratio.
+                let slack = 1e-12 * own.abs().max(1.0);
+                if !(lower - slack <= own && own <= upper + slack) {
+                    let (joint, follower) = (self.joints[driver].name.clone(), joint.name.clone());
+                    return Err(LockError::Follower { joint, position, follower, value: own, lower, upper });
+                }
+                if unbelievable(own).is_some() {
+                    return Err(too_large(joint, own));
+                }
+                let held = displacement(joint.kind, joint.axis, own);
+                fix(&mut self.joints[index], &held);
+                standing.push((index, own));
             }
-            let held = displacement(joint.kind, joint.axis, own);
-            fix(joint, &held);
         }
         Ok(())
     }
@@ -172,6 +199,10 @@ impl Robot {
 
 /// The motion at which a joint is held.
 fn held(joint: &Joint, values: &[f64]) -> Result<IsometryMatrix3<f64>, LockError> {
+    let is_large = |value: &f64| value.is_finite() && unbelievable(*value).is_some();
+    if let Some(&value) = values.iter().find(|value| is_large(value)) {
+        return Err(too_large(joint, value));
+    }
     let count = || LockError::Count { joint: joint.name.clone(), kind: joint.kind, count: values.len() };
     match *values {
         [value] if joint.kind.is_movable() => {
@@ -184,10 +215,39 @@ fn held(joint: &Joint, values: &[f64]) -> Result<IsometryMatrix3<f64>, LockError
         [0.0] if !joint.kind.is_movable() => Ok(IsometryMatrix3::identity()),
         [x, y, z, roll, pitch, yaw] if !joint.kind.is_movable() && values.iter().all(|v| v.is_finite()) => {
             let turn = Rotation3::from_euler_angles(roll, pitch, yaw);
-            Ok(IsometryMatrix3::from_parts(Translation3::from(Vector3::new(x, y, z)), turn))
+            let pose = IsometryMatrix3::from_parts(Translation3::from(Vector3::new(x, y, z)), turn);
+            match pose_problem(joint, &pose) {
+                Some(problem) => {
+                    Err(LockError::Pose { joint: joint.name.clone(), kind: joint.kind, problem })
+                }
+                None => Ok(pose),
+            }
         }
         _ => Err(count()),
     }
+}
+
+/// Says where a joint with several degrees of freedom can not be brought.
+fn pose_problem(joint: &Joint, pose: &IsometryMatrix3<f64>) -> Option<&'static str> {
+    /// How far a pose may be off for its few digits \[m\] or \[rad\].
+    const SLACK: f64 = 1e-6;
+    let (shift, normal) = (pose.translation.vector, joint.axis);
+    match joint.kind {
+        JointKind::Planar if shift.dot(&normal).abs() > SLACK => {
+            Some("moves in the plane normal to its axis alone")
+        }
+        JointKind::Planar if (pose.rotation * normal - normal).norm() > SLACK => {
+            Some("turns about the normal of its plane, its axis, alone")
+        }
+        JointKind::Spherical if shift.norm() > SLACK => {
+            Some("turns about its origin, which stays in its place")
+        }
+        _ => None,
+    }
+}
+
+fn too_large(joint: &Joint, value: f64) -> LockError {
+    LockError::Size { joint: joint.name.clone(), problem: unbelievable(value).unwrap_or_default() }
 }
 
 fn fix(joint: &mut Joint, held: &IsometryMatrix3<f64>) {
@@ -195,5 +255,5 @@ fn fix(joint: &mut Joint, held: &IsometryMatrix3<f64>) {
     joint.kind = JointKind::Fixed;
     joint.axis = Vector3::x();
     joint.limits = Limits::UNLIMITED;
-    joint.mimic = None;
+    (joint.mimic, joint.follows) = (None, None);
 }

@@ -14,15 +14,18 @@ pub mod embedded;
 mod export;
 mod file;
 mod fold;
+mod follow;
 mod kinematics;
 mod lock;
 mod model;
 mod names;
+pub(crate) mod nearby;
 mod path;
 mod poses;
 mod positions;
 mod segment;
 mod side_by_side;
+mod size;
 mod toml_table;
 mod tool;
 mod tree;
@@ -44,4 +47,8 @@ pub use tree::{TreeRow, TreeRows};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, ReadError, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 
+#[cfg(feature = "cli")]
+pub(crate) use names::{is_odd, quote};
+pub(crate) use names::{printable, shown};
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};
+pub(crate) use size::unbelievable;

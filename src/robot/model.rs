@@ -110,6 +110,19 @@ pub struct Mimic {
     pub offset: f64,
 }
 
+impl Mimic {
+    /// Returns how a joint that follows another one like this moves with what that one follows:
+    /// `m (m' x + o') + o = (m m') x + (m o' + o)`.
+    pub(super) fn through(self, followed: Mimic) -> Mimic {
+        let Mimic { multiplier, offset, .. } = self;
+        Mimic {
+            driver: followed.driver,
+            multiplier: multiplier * followed.multiplier,
+            offset: multiplier * followed.offset + offset,
+        }
+    }
+}
+
 /// Why a joint or a link can not be used, and where the file says so.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Defect {
@@ -153,6 +166,9 @@ pub struct Joint {
     pub limits: Limits,
     /// Set when the joint follows another.
     pub mimic: Option<Mimic>,
+    /// What the joint follows by its own `<mimic>`: perhaps a joint that follows another one itself. What is done to that
+    /// one reaches this one.
+    pub(super) follows: Option<Mimic>,
     /// Set when no chain may pass through the joint.
     pub defect: Option<Defect>,
     /// Roll, pitch and yaw that `origin` was made from, where they are known: bits that the matrix does not give back.

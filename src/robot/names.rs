@@ -1,5 +1,8 @@
 //! Names in messages: the nearest known ones, and long ones cut short.
 
+use std::borrow::Cow;
+use std::path::Path;
+
 /// Longest name, in characters, that a comparison is worth.
 const LONGEST: usize = 64;
 /// Longest name of a link or joint that is read, in bytes.
@@ -61,18 +64,53 @@ pub(super) fn short_list(names: &[impl AsRef<str>], conjunction: &str) -> String
     format!("{} and {} more", first.join(", "), names.len() - MOST)
 }
 
-/// Returns a name between backticks, control characters escaped, cut after sixty characters.
-pub(super) fn quote(name: &str) -> String {
-    let mut quoted = String::from("`");
-    for (count, c) in name.chars().enumerate() {
-        if count == SHOWN {
-            quoted.push('…');
-            break;
-        }
-        if c.is_control() { quoted.extend(c.escape_default()) } else { quoted.push(c) }
+/// Returns a name between backticks, odd characters escaped, cut after sixty characters.
+pub(crate) fn quote(name: &str) -> String {
+    let end = name.char_indices().nth(SHOWN).map_or(name.len(), |(end, _)| end);
+    let cut = if end < name.len() { "…" } else { "" };
+    format!("`{}{cut}`", printable(&name[..end]))
+}
+
+/// Returns a text as it may be shown: [odd](is_odd) characters are written by their numbers, `\u{1b}`, or `\n`.
+pub(crate) fn printable(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_odd) {
+        return Cow::Borrowed(text);
     }
-    quoted.push('`');
-    quoted
+    let mut shown = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        if is_odd(c) { shown.extend(c.escape_default()) } else { shown.push(c) }
+    }
+    Cow::Owned(shown)
+}
+
+/// Returns a path as it may be shown; see [`printable`].
+pub(crate) fn shown(path: &Path) -> String {
+    printable(&path.to_string_lossy()).into_owned()
+}
+
+/// Whether a character commands a terminal, turns the direction of writing, or looks like a blank or like nothing and is
+/// neither.
+pub(crate) fn is_odd(c: char) -> bool {
+    c.is_control()
+        || (c.is_whitespace() && c != ' ')
+        || matches!(c, '\u{ad}' | '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
+}
+
+/// Says what is wrong with the name of a link or a joint; nothing where URDF can hold it.
+pub(super) fn problem(name: &str) -> Option<String> {
+    if name.trim().is_empty() {
+        return Some("is empty".to_owned());
+    }
+    if name.len() > LONGEST_NAME {
+        return Some(format!("has more than {LONGEST_NAME} bytes"));
+    }
+    let foreign = name.chars().find(|&c| !is_of_xml(c));
+    foreign.map(|c| format!("holds the character {}, which no URDF can hold", quote(&c.to_string())))
+}
+
+/// Whether a character may stand in XML.
+pub(super) fn is_of_xml(c: char) -> bool {
+    matches!(c, '\t' | '\n' | '\r' | ' '..='\u{fffd}' | '\u{10000}'..)
 }
 
 #[cfg(test)]
@@ -93,6 +131,26 @@ mod tests {
         let huge = "x".repeat(1_000_000);
         assert!(nearest(&huge, [huge.as_str()]).is_empty());
         assert!(quote(&huge).len() < 80);
+    }
+
+    #[test]
+    fn what_a_terminal_would_obey_is_written_by_its_number() {
+        assert_eq!(
+            printable("a\u{1b}[31mb\u{9b}c\nd\u{a0}e\u{202e}f"),
+            r"a\u{1b}[31mb\u{9b}c\nd\u{a0}e\u{202e}f"
+        );
+        assert_eq!(quote("1\u{a0}2"), r"`1\u{a0}2`");
+        for plain in ["größe", "関節 1", "a\u{200d}b", "it's"] {
+            assert_eq!(printable(plain), plain);
+        }
+    }
+
+    #[test]
+    fn names_that_urdf_can_not_hold_say_why() {
+        assert_eq!(problem(" ").unwrap(), "is empty");
+        assert_eq!(problem("a\u{0}").unwrap(), r"holds the character `\u{0}`, which no URDF can hold");
+        assert!(problem("a\u{ffff}").is_some() && problem(&"x".repeat(1025)).is_some());
+        assert_eq!(["a", "a b", "a\nb", "\u{9b}", "𝕒"].map(problem), [const { None }; 5]);
     }
 
     #[test]

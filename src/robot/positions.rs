@@ -1,5 +1,6 @@
 //! Joint positions held against the chain that they are for.
 
+use super::names::{printable, quote};
 use super::{Chain, LimitViolation};
 use crate::math::figure;
 use thiserror::Error;
@@ -9,7 +10,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum PositionsError {
     /// There are too few or too many.
-    #[error("expected {expected} positions ({joints}), got {got}")]
+    #[error("expected {expected} positions ({}), got {got}", printable(.joints))]
     Length {
         /// Positions given.
         got: usize,
@@ -19,7 +20,7 @@ pub enum PositionsError {
         joints: String,
     },
     /// One is infinite or NaN.
-    #[error("the position of joint `{joint}` is {value}, which is not a finite number")]
+    #[error("the position of joint {} is {value}, which is not a finite number", quote(.joint))]
     NonFinite {
         /// Index of the joint in [`Chain::joints`].
         index: usize,
@@ -29,7 +30,7 @@ pub enum PositionsError {
         value: f64,
     },
     /// One lies outside the joint's limits.
-    #[error("joint `{}` would be at {}, outside its limits [{}, {}]", .0.joint, figure(.0.value), figure(.0.lower), figure(.0.upper))]
+    #[error("joint {} would be at {}, outside its limits [{}, {}]", quote(&.0.joint), figure(.0.value), figure(.0.lower), figure(.0.upper))]
     OutsideLimits(LimitViolation),
 }
 

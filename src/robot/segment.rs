@@ -274,7 +274,8 @@ impl Parts {
         let twist = Turn::new(slope, next_z.z);
         let rest = twist.about_x().inverse() * own.about_z().inverse() * constant.rotation;
         let left_over = Turn::new(rest[(1, 0)], rest[(0, 0)]);
-        let length = constant.translation.vector.norm();
+        // The largest part says how long it is, and can not overflow as a sum of squares does.
+        let length = constant.translation.vector.amax();
         let turned = own.about_z().inverse() * constant.translation.vector;
         let translation = turned.map(|part| if part.abs() < NEGLIGIBLE * length { 0.0 } else { part });
         Parts { offset: carried.then(own), translation, twist, left_over }
@@ -311,6 +312,21 @@ mod tests {
                 let whole = IsometryMatrix3::from_parts(Translation3::identity(), carried.about_z()) * constant;
                 prop_assert!((again.to_homogeneous() - whole.to_homogeneous()).norm() < 2e-15);
             }
+        }
+    }
+
+    #[test]
+    fn no_length_is_too_great_to_be_taken_apart() {
+        // A power of two changes no digit.
+        let scale = 2.0_f64.powi(600);
+        for shift in [[0.3, -0.2, 0.5], [1.0, 1e-20, 0.0], [0.0, 0.0, -2.0]].map(Vector3::from) {
+            let parts = |scale: f64| {
+                let rotation = Rotation3::from_euler_angles(0.3, -1.1, 2.0);
+                let constant = IsometryMatrix3::from_parts((shift * scale).into(), rotation);
+                Parts::of(&constant, Turn::new(0.6, 0.8)).translation
+            };
+            assert_eq!(parts(scale), parts(1.0) * scale);
+            assert!(parts(scale).amax() > 0.1 * scale);
         }
     }
 

@@ -5,14 +5,12 @@ use toml::de::{DeTable, DeValue};
 
 use super::Diagnostic;
 use super::names::{list, quote};
+use super::size::unbelievable;
 use super::urdf::report::Report;
 use crate::math::evaluate;
 
 /// A value and where it stands.
 pub(super) type Value<'a, 'i> = &'a Spanned<DeValue<'i>>;
-
-/// Largest length \[m\], angle \[rad\] or offset that is believed: beyond it nothing of the arithmetic would be left.
-pub(super) const MAX_SIZE: f64 = 1e6;
 
 /// Reads a text as TOML through `read`; `None` when anything was an error.
 pub(super) fn read_toml<T>(
@@ -110,14 +108,7 @@ impl<'a, 'i> Entries<'a, 'i> {
 /// Returns a finite number of believable size, given as a number or as an expression in pi.
 fn number(key: &str, value: Value<'_, '_>, report: &mut Report<'_>) -> Option<f64> {
     let number = real(key, value, report)?;
-    if number.abs() <= MAX_SIZE {
-        return Some(number);
-    }
-    let cause = if number.is_finite() {
-        format!("{number:e} is beyond any arm; lengths [m] and angles [rad] are at most {MAX_SIZE:e} in size")
-    } else {
-        format!("{number} is not a finite number")
-    };
+    let Some(cause) = unbelievable(number) else { return Some(number) };
     report.error(value.span().start, format!("`{key}`: {cause}"));
     None
 }

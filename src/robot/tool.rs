@@ -3,10 +3,11 @@
 use nalgebra::{IsometryMatrix3, Vector3};
 use thiserror::Error;
 
+use super::size::unbelievable;
 use super::{Joint, JointKind, Limits, Link, Robot, names};
 
 /// Why a tool can not be put on.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ToolError {
     /// A link that the robot does not have.
@@ -23,6 +24,12 @@ pub enum ToolError {
         /// The name.
         name: String,
     },
+    /// A pose that no arm reaches, or that is none.
+    #[error("the tool can not be put there: {problem}")]
+    Size {
+        /// What is wrong with a number of the pose.
+        problem: String,
+    },
 }
 
 impl Robot {
@@ -30,7 +37,7 @@ impl Robot {
     /// a corrected flange. The joint between them has the same name.
     ///
     /// # Errors
-    /// [`ToolError`]: no such link (with the nearest names), or a name that is taken.
+    /// [`ToolError`]: no such link (with the nearest names), a name that is taken, or a pose beyond any arm.
     ///
     /// ```
     /// use kinstep::nalgebra::IsometryMatrix3;
@@ -54,6 +61,10 @@ impl Robot {
         if self.link(name).is_some() || self.joint(name).is_some() {
             return Err(ToolError::NameTaken { name: name.to_owned() });
         }
+        let numbers = link_from_tool.translation.vector.iter().chain(link_from_tool.rotation.matrix());
+        if let Some(problem) = numbers.copied().find_map(unbelievable) {
+            return Err(ToolError::Size { problem });
+        }
         let mut robot = self.clone();
         robot.insert_leaf(parent, name, link_from_tool);
         Ok(robot)
@@ -69,7 +80,7 @@ impl Robot {
         }
         for joint in &mut self.joints {
             (joint.parent, joint.child) = (moved(joint.parent, place), moved(joint.child, place));
-            if let Some(mimic) = &mut joint.mimic {
+            for mimic in joint.mimic.iter_mut().chain(&mut joint.follows) {
                 mimic.driver = moved(mimic.driver, joint_place);
             }
         }
@@ -84,6 +95,7 @@ impl Robot {
             axis: Vector3::x(),
             limits: Limits::UNLIMITED,
             mimic: None,
+            follows: None,
             defect: None,
             angles: None,
         };

@@ -1,5 +1,6 @@
 //! From a scenario to a planner: robots and rows looked up, chains mounted, paths laid.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Unit, Vector3};
@@ -134,28 +135,13 @@ impl Scenario {
     /// different places they are two of a kind.
     ///
     /// # Errors
-    /// Two arms with a joint in common of which it can not be said whether they are one machine, since their bases are
-    /// different links of it, or the robot is not calibrated and locked alike.
+    /// Two arms with a joint in common that shall be independent, or of which it can not be said whether they are one
+    /// machine, since their bases are different links of it, or the robot is not calibrated and locked alike.
     fn on_machines(&self, arms: Vec<Arm>) -> Result<Vec<Arm>, ScenarioError> {
-        for (i, (spec, arm)) in self.arm.iter().zip(&arms).enumerate() {
-            for (other_spec, other) in self.arm.iter().zip(&arms).take(i) {
-                let is_unclear = (&spec.robot, &spec.mount) == (&other_spec.robot, &other_spec.mount)
-                    && !spec.is_same_machine(other_spec);
-                let common = arm.chain().joints().iter().map(|joint| &joint.name);
-                let mut common =
-                    common.filter(|name| other.chain().joints().iter().any(|j| &&j.name == name));
-                if let Some(joint) = common.next().filter(|_| is_unclear) {
-                    let key = if spec.base == other_spec.base { "robot" } else { "base" };
-                    let differs = if key == "base" { "`base`" } else { "`calibration` and `lock`" };
-                    let text = format!(
-                        "arms `{}` and `{}` both move joint `{joint}` of one robot; give them the same {differs} to share the \
-                         joint, or different mounts if there are two such robots",
-                        other_spec.name, spec.name
-                    );
-                    let at = KeyPath::dotted("arm").key(&spec.name).key(key);
-                    return Err(ScenarioError::at(ErrorKind::Scenario, &at, text));
-                }
-            }
+        let all: Vec<(&ArmSpec, &Arm)> = self.arm.iter().zip(&arms).collect();
+        for (i, &own) in all.iter().enumerate() {
+            let objection = all[..i].iter().find_map(|&other| objection(own, other));
+            objection.map_or(Ok(()), Err)?;
         }
         // A machine is called after the first of its arms.
         let machine = |own: &ArmSpec| self.arm.iter().find(|other| other.is_same_machine(own));
@@ -217,6 +203,41 @@ fn refused_positions(at: &KeyPath, problem: &PositionsError) -> ScenarioError {
     ScenarioError::at(ErrorKind::Scenario, &at, problem)
 }
 
+/// Says why two arms with a joint in common can not be planned as they stand.
+fn objection((spec, arm): (&ArmSpec, &Arm), (other_spec, other): (&ArmSpec, &Arm)) -> Option<ScenarioError> {
+    let is_one = spec.is_same_machine(other_spec);
+    let is_unclear = !is_one && (&spec.robot, &spec.mount) == (&other_spec.robot, &other_spec.mount);
+    let apart = [spec, other_spec].into_iter().find(|own| own.independent).filter(|_| is_one);
+    if !is_unclear && apart.is_none() {
+        return None;
+    }
+    let joint = in_common(arm, other)?;
+    let (key, remedy) = if is_one {
+        ("independent", "leave `independent` out to share the joint, or hold it still with `lock` in both")
+    } else if spec.base == other_spec.base {
+        (
+            "robot",
+            "give them the same `calibration`, `lock` and `assume_unlimited` to share the joint, or different mounts if \
+                   there are two such robots",
+        )
+    } else {
+        (
+            "base",
+            "give them the same `base` to share the joint, or different mounts if there are two such robots",
+        )
+    };
+    let (one, two) = (&other_spec.name, &spec.name);
+    let problem = format!("arms `{one}` and `{two}` both move joint `{joint}` of one robot; {remedy}");
+    let at = KeyPath::dotted("arm").key(&apart.unwrap_or(spec).name).key(key);
+    Some(ScenarioError::at(ErrorKind::Scenario, &at, problem))
+}
+
+/// The first joint that two arms both move.
+fn in_common<'a>(arm: &'a Arm, other: &Arm) -> Option<&'a str> {
+    let theirs: HashSet<&str> = other.chain().joints().iter().map(|joint| joint.name.as_str()).collect();
+    arm.chain().joints().iter().map(|joint| joint.name.as_str()).find(|name| theirs.contains(name))
+}
+
 /// Returns where the robot of an arm comes from, and the robot as it is there.
 pub(super) fn read_robot(
     at: &KeyPath,
@@ -225,7 +246,8 @@ pub(super) fn read_robot(
 ) -> Result<(RobotSource, Robot), ScenarioError> {
     let refuse = |e: ScenarioError| ScenarioError::at(e.kind, &at.key("robot"), e.message);
     let source = RobotSource::find(&spec.robot, folder).map_err(refuse)?;
-    let robot = source.read(&UrdfOptions::default()).map_err(|e| {
+    let options = UrdfOptions { assume_unlimited: spec.assume_unlimited, ..UrdfOptions::default() };
+    let robot = source.read(&options).map_err(|e| {
         let refusal = source.refusal(&e);
         let message = format!("{}: {}", at.key("robot"), refusal.message);
         let path = Some(at.key("robot")).filter(|_| refusal.kind == ErrorKind::File);
@@ -286,6 +308,7 @@ impl ArmSpec {
     pub(super) fn is_same_machine(&self, other: &Self) -> bool {
         (&self.robot, &self.base, &self.mount) == (&other.robot, &other.base, &other.mount)
             && (&self.calibration, &self.lock) == (&other.calibration, &other.lock)
+            && self.assume_unlimited == other.assume_unlimited
     }
 }
 

@@ -11,6 +11,7 @@ use super::error::{ErrorKind, Place, ScenarioError, not_one_of, suggestion};
 use super::key_path::{KeyPath, Step};
 use super::model::Scenario;
 use super::overrides;
+use crate::robot::{nearby, shown};
 
 /// Longest scenario file that is read [bytes].
 const MAX_BYTES: u64 = 16 << 20;
@@ -262,10 +263,10 @@ fn path_at(entries: &[Entry], span: &Range<usize>) -> (KeyPath, bool) {
 
 /// Returns the text of a file, with a sentence for what stands in the way.
 pub(crate) fn read_text(file: &Path) -> Result<String, ScenarioError> {
-    let refuse = |problem: String| ScenarioError::of_file(file, format!("{}: {problem}", display(file)));
+    let refuse = |problem: String| ScenarioError::of_file(file, format!("{}: {problem}", shown(file)));
     let unreadable = |e: &std::io::Error| {
         refuse(match e.kind() {
-            std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+            std::io::ErrorKind::NotFound => format!("there is no such file{}", nearby::whereabouts(file)),
             std::io::ErrorKind::PermissionDenied => "permission to read it is denied".to_owned(),
             std::io::ErrorKind::IsADirectory => "this is a folder, not a file".to_owned(),
             _ => format!("it can not be read: {e}"),

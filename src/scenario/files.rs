@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::error::{ErrorKind, ScenarioError};
 use super::model::Scenario;
 use super::robots::RobotSource;
+use crate::robot::{nearby, shown};
 
 /// Returns where a file is that is named by `reference`: tried from `folder`, and then from the working directory.
 pub(super) fn find(reference: &str, folder: Option<&Path>) -> Option<PathBuf> {
@@ -13,13 +14,21 @@ pub(super) fn find(reference: &str, folder: Option<&Path>) -> Option<PathBuf> {
 
 /// Returns the refusal of a reference that [`find`] does not find, with every place that was tried.
 pub(super) fn missing(reference: &str, folder: Option<&Path>) -> ScenarioError {
+    let named = shown(Path::new(reference));
     let message = match places(reference, folder).as_slice() {
-        [beside, here] => format!(
-            "{reference}: there is no such file beside the scenario ({}) or in the working directory ({})",
-            beside.display(),
-            here.display()
-        ),
-        _ => format!("{reference}: there is no such file"),
+        [beside, here] => {
+            let near = Some(nearby::hint(beside)).filter(|near| near.contains('?'));
+            format!(
+                "{named}: there is no such file beside the scenario ({}) or in the working directory ({}){}",
+                shown(beside),
+                shown(here),
+                near.unwrap_or_else(|| nearby::hint(here))
+            )
+        }
+        [here] if folder.is_some() && here.is_relative() => {
+            format!("{named}: there is no such file beside the scenario{}", nearby::hint(here))
+        }
+        _ => format!("{named}: there is no such file{}", nearby::whereabouts(Path::new(reference))),
     };
     ScenarioError::of_file(Path::new(reference), message)
 }

@@ -135,6 +135,12 @@ pub struct ArmSpec {
     /// Joints of the robot that are held still, by name; on the arm's path they count as fixed.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub lock: BTreeMap<String, Held>,
+    /// Whether the arm has to move by itself: a joint in common with another arm is then refused rather than shared.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub independent: bool,
+    /// Whether joints without a `<limit>` element move without limits. Default: no chain passes through them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub assume_unlimited: bool,
     /// The path of the tip.
     pub path: PathSpec,
 }

@@ -77,6 +77,18 @@ impl Desk {
         kinstep_in(self.folder.path(), arguments)
     }
 
+    /// Runs a command as it was printed, as a person does who types it again.
+    #[cfg(unix)]
+    pub(crate) fn shell(&self, command: &str) -> Run {
+        let program = assert_cmd::cargo::cargo_bin("kinstep");
+        let script = format!("kinstep() {{ \"$PROGRAM\" \"$@\"; }}; {command}");
+        let mut shell = std::process::Command::new("bash");
+        let shell = shell.args(["-c", &script]).env("PROGRAM", program).env("NO_COLOR", "1");
+        let output = shell.current_dir(self.folder.path()).output().unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Run { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
+    }
+
     /// Names of everything in a folder of the desk, hidden files included.
     pub(crate) fn names(&self, folder: &str) -> Vec<String> {
         let Ok(entries) = std::fs::read_dir(self.path(folder)) else { return Vec::new() };

@@ -6,9 +6,14 @@ use kinstep::study::strategies::{TreeCase, TreeJoint};
 
 /// Poses of all links in the root, with quaternions and one frame per joint.
 pub(crate) fn poses(tree: &TreeCase) -> Vec<IsometryMatrix3<f64>> {
+    poses_at(tree, |i| tree.position(i))
+}
+
+/// As [`poses`], at other positions of the joints, by their places in the tree.
+pub(crate) fn poses_at(tree: &TreeCase, position: impl Fn(usize) -> f64) -> Vec<IsometryMatrix3<f64>> {
     let mut poses = vec![Isometry3::identity()];
     for (i, joint) in tree.joints.iter().enumerate() {
-        poses.push(poses[joint.parent] * origin(joint) * motion(joint, tree.position(i)));
+        poses.push(poses[joint.parent] * origin(joint) * motion(joint, position(i)));
     }
     let with_matrix = |pose: Isometry3<f64>| {
         IsometryMatrix3::from_parts(pose.translation, pose.rotation.to_rotation_matrix())

@@ -155,10 +155,19 @@ pub(in crate::cli) struct InverseArguments {
     pub(in crate::cli) q0: Option<String>,
 
     /// Starting places to try at most
-    #[arg(long, default_value_t = 100)]
+    #[arg(long, default_value_t = 100, allow_hyphen_values = true, value_parser = count)]
     pub(in crate::cli) starts: usize,
 
     /// Seed of the starting places
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, allow_hyphen_values = true, value_parser = seed)]
     pub(in crate::cli) seed: u64,
+}
+
+/// Reads how many of something there should be: at least one.
+fn count(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&count| count > 0).ok_or_else(|| "give a whole number, at least 1".to_owned())
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("give a whole number between 0 and {}", u64::MAX))
 }

@@ -1,7 +1,7 @@
 //! Tables as TOML files.
 
-use super::table::{DhConvention, DhError, DhRow, DhTable};
-use crate::robot::names::{list, quote};
+use super::table::{DhConvention, DhError, DhRow, DhTable, MAX_ROWS, Names};
+use crate::robot::names::{self, list, quote};
 use crate::robot::toml_table::{Entries, Value, read_toml, real, wrong_type};
 use crate::robot::urdf::report::Report;
 use crate::robot::{JointKind, Limits};
@@ -36,9 +36,16 @@ fn read(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhTable> {
     }
     file.check_keys("a table of a robot", &KEYS, report);
     let name = file.text("name", report).unwrap_or_default().to_owned();
+    if let Some(problem) = names::problem(&name).filter(|_| !name.is_empty()) {
+        report.error(file.place("name"), format!("`name` {problem}"));
+    }
     let base = file.text("base", report).unwrap_or("base").to_owned();
     let (convention, rows) = match (file.value("planar"), file.value("joint")) {
-        (Some(_), None) => (DhConvention::Modified, planar(file, report)?),
+        (Some(value), None) => {
+            let place = value.span().start;
+            let rows = planar(file, report)?.into_iter().map(|row| (place, row));
+            (DhConvention::Modified, rows.collect())
+        }
         (None, Some(value)) => {
             let (convention, rows) = (convention(file, report), rows(file, value, report)?);
             (convention?, rows)
@@ -54,10 +61,29 @@ fn read(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<DhTable> {
             return None;
         }
     };
-    if !rows.iter().any(|row| row.kind.is_movable()) {
+    if !rows.iter().any(|(_, row)| row.kind.is_movable()) {
         report.error(file.place("joint"), "no row of the table moves");
     }
+    if let Some((place, _)) = rows.get(MAX_ROWS) {
+        let cause = format!("the table has {} rows, more than the {MAX_ROWS} that are read", rows.len());
+        report.error(*place, cause);
+        return None;
+    }
+    match Names::new(&base) {
+        Ok(names) => check_names(names, &rows, convention, report),
+        Err(problem) => report.error(file.place("base"), format!("`base` {problem}")),
+    }
+    let rows = rows.into_iter().map(|(_, row)| row).collect();
     Some(DhTable { name, base, convention, rows })
+}
+
+/// Reports the rows whose names are there already, or can not be names.
+fn check_names(mut names: Names, rows: &[(usize, DhRow)], convention: DhConvention, report: &mut Report<'_>) {
+    for (place, row) in rows {
+        if let Err(problem) = names.take(row, convention) {
+            report.error(*place, problem);
+        }
+    }
 }
 
 /// Says what other TOML file this is, and where that shows.
@@ -78,7 +104,12 @@ fn is_something_else(file: &Entries<'_, '_>) -> Option<(usize, String)> {
     })
 }
 
-fn rows(file: &Entries<'_, '_>, joints: Value<'_, '_>, report: &mut Report<'_>) -> Option<Vec<DhRow>> {
+/// Returns the rows and where they stand.
+fn rows(
+    file: &Entries<'_, '_>,
+    joints: Value<'_, '_>,
+    report: &mut Report<'_>,
+) -> Option<Vec<(usize, DhRow)>> {
     let Some(entries) = joints.get_ref().as_array() else {
         wrong_type("joint", "a list of rows, each begun by a line [[joint]]", joints, report);
         return None;
@@ -94,7 +125,8 @@ fn rows(file: &Entries<'_, '_>, joints: Value<'_, '_>, report: &mut Report<'_>) 
             wrong_type("joint", "rows that are tables", entry, report);
             return None;
         };
-        row(&Entries { table, offset: entry.span().start }, index, count, report)
+        let offset = entry.span().start;
+        Some((offset, row(&Entries { table, offset }, index, count, report)?))
     };
     Some(entries.iter().enumerate().filter_map(row).collect())
 }
@@ -128,8 +160,9 @@ fn planar(file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<Vec<DhRow>>
     let mut rows = DhTable::planar("", &lengths).rows;
     for row in rows.iter_mut().filter(|row| row.kind.is_movable()) {
         (row.limits, row.kind) = (limits, kind);
-        if let Some(problem) = row.problem() {
-            report.error(file.place("limits"), problem);
+        if let Some((key, problem)) = row.problem() {
+            let key = if file.value(key).is_some() { key } else { "planar" };
+            report.error(file.place(key), problem);
             return None;
         }
     }
@@ -147,8 +180,8 @@ fn row(table: &Entries<'_, '_>, index: usize, count: usize, report: &mut Report<
     let kind = kind(table, report)?;
     let [a, alpha, d, theta] = ["a", "alpha", "d", "theta"].map(|key| table.number(key, report));
     let row = DhRow { joint, link, kind, a, alpha, d, theta, limits: limits(table, report) };
-    if let Some(problem) = row.problem() {
-        report.error(table.offset, format!("joint {}: {problem}", quote(&row.joint)));
+    if let Some((key, problem)) = row.problem() {
+        report.error(table.place(key), format!("joint {}: {problem}", quote(&row.joint)));
     }
     Some(row)
 }

@@ -5,11 +5,11 @@ use std::collections::HashSet;
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 use thiserror::Error;
 
-use crate::robot::toml_table::MAX_SIZE;
+use crate::robot::size::MAX_SIZE;
 use crate::robot::{Diagnostic, Joint, JointKind, Limits, Link, MAX_JOINTS, Robot, diagnostic, names};
 
 /// Most rows of a table: in the standard custom each makes two joints.
-const MAX_ROWS: usize = MAX_JOINTS / 2;
+pub(super) const MAX_ROWS: usize = MAX_JOINTS / 2;
 
 /// Which of the two customs the rows follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,6 +93,12 @@ pub enum DhError {
         /// What is wrong with it.
         problem: String,
     },
+    /// The name of the first link can not be one.
+    #[error("`base` of the table {problem}")]
+    Base {
+        /// What is wrong with it.
+        problem: String,
+    },
     /// No row moves, or there are too many.
     #[error(
         "the table has {rows} rows, {moving} of which move; a robot needs one that moves and at most {MAX_ROWS} rows"
@@ -145,28 +151,38 @@ impl DhTable {
 }
 
 impl DhRow {
-    /// Says what can not be meant in this row.
-    pub(super) fn problem(&self) -> Option<String> {
+    /// Says what can not be meant in this row, and under which key.
+    pub(super) fn problem(&self) -> Option<(&'static str, String)> {
         let numbers = [("a", self.a), ("alpha", self.alpha), ("d", self.d), ("theta", self.theta)];
         if let Some((key, value)) = numbers.into_iter().find(|(_, value)| !(value.abs() <= MAX_SIZE)) {
-            return Some(format!("`{key}` is {value}, which is not finite or beyond any arm"));
+            return Some((key, format!("`{key}` is {value}, which is not finite or beyond any arm")));
         }
-        if !self.kind.is_supported() {
-            return Some(format!(
-                "a row can not be {}; rows are revolute, continuous, prismatic or fixed",
-                self.kind
-            ));
+        match self.kind {
+            JointKind::Fixed => None,
+            kind if !kind.is_supported() => {
+                let cause =
+                    format!("a row can not be {kind}; rows are revolute, continuous, prismatic or fixed");
+                Some(("kind", cause))
+            }
+            kind => self.limits_problem(kind),
         }
+    }
+
+    fn limits_problem(&self, kind: JointKind) -> Option<(&'static str, String)> {
         let Limits { lower, upper, velocity } = self.limits;
-        let usable = lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY && velocity > 0.0;
-        if self.kind.is_movable() && !usable {
-            return Some(format!("its limits {lower} to {upper} at a speed of {velocity} let nothing move"));
-        }
-        let is_bounded = lower.is_finite() || upper.is_finite();
-        if self.kind == JointKind::Continuous && is_bounded {
-            return Some("a continuous joint has no limits; make it revolute, or leave them out".to_owned());
-        }
-        None
+        let of_range = if lower > upper {
+            Some(format!("its lower limit {lower} is greater than its upper limit {upper}"))
+        } else if !(lower < f64::INFINITY && upper > f64::NEG_INFINITY) {
+            Some(format!("no position lies between its limits {lower} and {upper}"))
+        } else if kind == JointKind::Continuous && (lower.is_finite() || upper.is_finite()) {
+            Some("a continuous joint has no limits; make it revolute, or leave them out".to_owned())
+        } else {
+            None
+        };
+        let is_slow = !(velocity > 0.0);
+        let of_speed =
+            is_slow.then(|| format!("its velocity limit {velocity} lets it never move; give a positive one"));
+        of_range.map(|cause| ("limits", cause)).or(of_speed.map(|cause| ("velocity", cause)))
     }
 
     /// The constant transforms before and after the motion about (or along) z.
@@ -203,63 +219,106 @@ impl Robot {
     /// body, the body's frame at its joint is a link too, named after it with `_axis`.
     ///
     /// # Errors
-    /// [`DhError`]: no row that moves, too many rows, a name used twice, or a row with numbers that can not be meant.
+    /// [`DhError`]: no row that moves, too many rows, a name used twice or that URDF can not hold, or a row with numbers that
+    /// can not be meant.
     pub fn from_dh(table: &DhTable) -> Result<Robot, DhError> {
         let moving = table.rows.iter().filter(|row| row.kind.is_movable()).count();
         if moving == 0 || table.rows.len() > MAX_ROWS {
             return Err(DhError::Size { rows: table.rows.len(), moving });
         }
+        let mut names = Names::new(&table.base).map_err(|problem| DhError::Base { problem })?;
         let mut serial = Serial::new(&table.base);
         for (row, number) in table.rows.iter().zip(1..) {
             let refuse = |problem| DhError::Row { row: number, problem };
-            row.problem().map_or(Ok(()), |problem| Err(refuse(problem)))?;
-            serial.row(row, table.convention).map_err(refuse)?;
+            row.problem().map_or(Ok(()), |(_, problem)| Err(refuse(problem)))?;
+            names.take(row, table.convention).map_err(refuse)?;
+            serial.row(row, table.convention);
         }
         Ok(Robot::assembled(table.name.clone(), serial.links, serial.joints))
     }
+}
+
+/// The names that the rows so far have given.
+pub(super) struct Names {
+    links: HashSet<String>,
+    joints: HashSet<String>,
+}
+
+impl Names {
+    /// Returns the names of a table without rows, or what is wrong with that of its first link.
+    pub(super) fn new(base: &str) -> Result<Names, String> {
+        let problem = names::problem(base);
+        problem.map_or_else(
+            || Ok(Names { links: HashSet::from([base.to_owned()]), joints: HashSet::new() }),
+            Err,
+        )
+    }
+
+    /// Refuses names that no robot can have, or that are there already.
+    pub(super) fn take(&mut self, row: &DhRow, convention: DhConvention) -> Result<(), String> {
+        let (joints, links) = names_of(row, convention);
+        for (what, given, taken) in [("joint", joints, &mut self.joints), ("link", links, &mut self.links)] {
+            for name in given {
+                if let Some(problem) = names::problem(&name) {
+                    return Err(format!("the name of its {what} {problem}"));
+                }
+                if !taken.insert(name.clone()) {
+                    let name = names::quote(&name);
+                    return Err(format!("{what} {name} is there already; every {what} needs its own name"));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The names of the joints and of the links that a row makes.
+fn names_of(row: &DhRow, convention: DhConvention) -> (Vec<String>, Vec<String>) {
+    let (joint, link) = (row.joint.clone(), row.link.clone());
+    if has_two_frames(row, convention) {
+        (vec![joint, format!("{link}_frame")], vec![format!("{link}_axis"), link])
+    } else {
+        (vec![joint], vec![link])
+    }
+}
+
+/// Whether the body of a row has a frame at its joint, beside the row's own at its far end.
+fn has_two_frames(row: &DhRow, convention: DhConvention) -> bool {
+    convention == DhConvention::Standard && row.kind.is_movable()
 }
 
 /// Links and joints one after the other.
 struct Serial {
     links: Vec<Link>,
     joints: Vec<Joint>,
-    link_names: HashSet<String>,
-    joint_names: HashSet<String>,
 }
 
 impl Serial {
     fn new(base: &str) -> Serial {
         let links = vec![Link { name: base.to_owned(), parent_joint: None, defect: None }];
-        Serial {
-            links,
-            joints: Vec::new(),
-            link_names: HashSet::from([base.to_owned()]),
-            joint_names: HashSet::new(),
-        }
+        Serial { links, joints: Vec::new() }
     }
 
-    fn row(&mut self, row: &DhRow, convention: DhConvention) -> Result<(), String> {
+    fn row(&mut self, row: &DhRow, convention: DhConvention) {
         let (before, after) = row.constants(convention);
-        let standard = convention == DhConvention::Standard;
-        if standard && row.kind.is_movable() {
-            self.joint(row, &row.joint, &format!("{}_axis", row.link), before, row.angles(convention))?;
+        let (joints, links) = names_of(row, convention);
+        if has_two_frames(row, convention) {
+            self.joint(row, [&joints[0], &links[0]], before, row.angles(convention));
             let flange = DhRow { kind: JointKind::Fixed, ..row.clone() };
-            let name = format!("{}_frame", row.link);
-            return self.joint(&flange, &name, &row.link, after, Some([row.alpha, 0.0, 0.0]));
+            return self.joint(&flange, [&joints[1], &links[1]], after, Some([row.alpha, 0.0, 0.0]));
         }
-        let angles = if standard { Some([row.alpha, 0.0, row.theta]) } else { row.angles(convention) };
-        self.joint(row, &row.joint, &row.link, before * after, angles)
+        let is_standard = convention == DhConvention::Standard;
+        let angles = if is_standard { Some([row.alpha, 0.0, row.theta]) } else { row.angles(convention) };
+        self.joint(row, [&joints[0], &links[0]], before * after, angles);
     }
 
     fn joint(
         &mut self,
         row: &DhRow,
-        name: &str,
-        link: &str,
+        [name, link]: [&str; 2],
         origin: IsometryMatrix3<f64>,
         angles: Option<[f64; 3]>,
-    ) -> Result<(), String> {
-        self.take_names(name, link)?;
+    ) {
         let child = self.links.len();
         self.links.push(Link { name: link.to_owned(), parent_joint: Some(self.joints.len()), defect: None });
         let limits = if row.kind.is_movable() { row.limits } else { Limits::UNLIMITED };
@@ -276,32 +335,9 @@ impl Serial {
             axis: if row.kind == JointKind::Fixed { Vector3::x() } else { Vector3::z() },
             limits,
             mimic: None,
+            follows: None,
             defect: None,
             angles,
         });
-        Ok(())
-    }
-
-    /// Refuses names that are empty, too long or there already.
-    fn take_names(&mut self, name: &str, link: &str) -> Result<(), String> {
-        if name.trim().is_empty() || link.trim().is_empty() {
-            return Err("its joint or its link has an empty name".to_owned());
-        }
-        if name.len().max(link.len()) > names::LONGEST_NAME {
-            return Err(format!("a name has more than {} bytes", names::LONGEST_NAME));
-        }
-        if !self.link_names.insert(link.to_owned()) {
-            return Err(format!(
-                "link {} is there already; every link needs its own name",
-                names::quote(link)
-            ));
-        }
-        if !self.joint_names.insert(name.to_owned()) {
-            return Err(format!(
-                "joint {} is there already; every joint needs its own name",
-                names::quote(name)
-            ));
-        }
-        Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! The document as a whole: markup, root element, version, and the order in which its parts are read.
 
-use roxmltree::{Document, Error, Node};
+use roxmltree::{Document, Error, Namespace, Node};
 
 use super::element::{self, Known};
 use super::outline::{self, Outline, Stop, Tag};
@@ -231,8 +231,13 @@ fn read_document(
             let is_srdf = ["group", "disable_collisions", "virtual_joint"]
                 .into_iter()
                 .any(|name| element::children_named(root, name).next().is_some());
+            let is_xacro =
+                |space: &Namespace<'_>| space.name() == Some("xacro") || space.uri().ends_with("/xacro");
             let cause = if is_srdf {
                 "the robot has no link: this is an SRDF (MoveIt's groups and poses); name the URDF that it belongs to"
+            } else if root.namespaces().any(is_xacro) {
+                "the robot has no link, and declares xacro's namespace: this is a part for other files to include, or xacro \
+                 that has not been expanded; run `xacro` on the file that includes it, and read the result"
             } else {
                 "the robot has no link: there is nothing to move"
             };
@@ -247,8 +252,19 @@ fn read_document(
 /// Checks that the root is `<robot>`, and names what else it is.
 fn check_root(root: Node<'_, '_>, report: &mut Report<'_>) -> bool {
     let name = root.tag_name().name();
+    let written = report.written_name(element::offset(root) + 1);
     let cause = match name {
-        "robot" => return true,
+        "robot" if element::is_plain(root) => return true,
+        "robot" => {
+            let space = root.tag_name().namespace().unwrap_or_default();
+            let cause = format!(
+                "the root element is {}, of the namespace {}: the elements of a URDF have no prefix; write `<robot>`",
+                element_name(written),
+                quote(space)
+            );
+            report.error(element::offset(root), cause);
+            return false;
+        }
         "sdf" | "gazebo" | "world" => {
             "this is SDF, not URDF; use the URDF that it was made from, or convert it (ROS 2 has `sdformat_urdf` \
              for this)"

@@ -5,12 +5,42 @@ use super::places::Places;
 
 /// Returns the bytes as text.
 pub(super) fn decode(bytes: &[u8]) -> Result<&str, UrdfError> {
+    if let Some((_, what)) = BINARY.iter().find(|(begin, _)| bytes.starts_with(begin)) {
+        let remedy =
+            if what.contains("compressed") || what.contains("archive") { "; unpack it first" } else { "" };
+        return Err(UrdfError::whole_file(format!("this is {what}, not a URDF{remedy}")));
+    }
     if let Some(name) = wide_encoding(bytes) {
         return Err(UrdfError::whole_file(format!(
             "the file is encoded as {name}; save it as UTF-8, for example with `iconv -f {name} -t UTF-8`"
         )));
     }
+    if std::str::from_utf8(bytes).is_err() && bytes.iter().any(|&byte| is_of_no_text(byte)) {
+        return Err(UrdfError::whole_file(
+            "the file is binary: it is no text in any encoding, and no URDF".to_owned(),
+        ));
+    }
     std::str::from_utf8(bytes).map_err(|error| not_utf8(bytes, error.valid_up_to()))
+}
+
+/// How files begin that people name in place of a URDF, and what they are.
+const BINARY: [(&[u8], &str); 11] = [
+    (b"\x7fELF", "a program (ELF)"),
+    (b"\x1f\x8b", "a compressed file (gzip)"),
+    (b"BZh", "a compressed file (bzip2)"),
+    (b"\xfd7zXZ", "a compressed file (xz)"),
+    (b"\x28\xb5\x2f\xfd", "a compressed file (zstd)"),
+    (b"PK\x03\x04", "an archive (zip)"),
+    (b"7z\xbc\xaf", "an archive (7z)"),
+    (b"\x89PNG", "a picture (PNG)"),
+    (b"\xff\xd8\xff", "a picture (JPEG)"),
+    (b"%PDF-", "a PDF"),
+    (b"glTF", "a mesh (glTF)"),
+];
+
+/// Whether no text of any one-byte encoding holds this byte.
+fn is_of_no_text(byte: u8) -> bool {
+    byte < b' ' && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | 0x1a)
 }
 
 /// Returns the name of a two- or four-byte encoding that the first bytes give away.

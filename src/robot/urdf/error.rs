@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::robot::diagnostic::{first_error, more, summary};
+use crate::robot::names::shown;
+use crate::robot::nearby;
 use crate::robot::{DhError, Diagnostic, Severity};
 
 /// Why no robot can be made of a text: every finding, with its place.
@@ -44,7 +46,7 @@ impl UrdfError {
 #[non_exhaustive]
 pub enum ReadError {
     /// The file can not be read.
-    #[error("can not read {}: {}{}", .path.display(), plain(.source), hint(.path, .directory.as_deref(), .source))]
+    #[error("can not read {}: {}{}", shown(.path), plain(.source), hint(.path, .directory.as_deref(), .source))]
     File {
         /// The file.
         path: PathBuf,
@@ -89,7 +91,7 @@ impl ReadError {
 
 /// Writes `file:line:column: message`.
 fn placed(path: &Path, found: &[Diagnostic], error: &impl std::fmt::Display) -> String {
-    let path = path.display();
+    let path = shown(path);
     match first_error(found) {
         Some(first) => {
             let more = more(found);
@@ -110,11 +112,13 @@ fn plain(source: &io::Error) -> String {
 
 fn hint(path: &Path, directory: Option<&Path>, source: &io::Error) -> String {
     let seen =
-        directory.map(|directory| format!(" (looked up from {})", directory.display())).unwrap_or_default();
+        directory.map(|directory| format!(" (looked up from {})", shown(directory))).unwrap_or_default();
+    let near = if source.kind() == io::ErrorKind::NotFound { nearby::hint(path) } else { String::new() };
     let remedy = match source.kind() {
         io::ErrorKind::NotFound if path.to_string_lossy().starts_with("package://") => {
             "; give the file's own path, `package://` needs ROS"
         }
+        io::ErrorKind::NotFound if !near.is_empty() => &near,
         io::ErrorKind::NotFound => "; check the spelling and the working directory",
         io::ErrorKind::IsADirectory => "; name the .urdf file inside it",
         _ => "",

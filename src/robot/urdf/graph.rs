@@ -280,6 +280,7 @@ fn joint(
         axis: axis(raw),
         limits: limits(raw),
         mimic: None,
+        follows: None,
         defect: raw.defect.clone(),
         angles: angles(raw),
     };
@@ -291,8 +292,9 @@ fn joint(
             (joint.axis, joint.limits) = (Vector3::x(), Limits::UNLIMITED);
         }
         // A driver without a place in the tree is defective, and then so is its follower.
-        mimic::Motion::Follows { driver, multiplier, offset } => {
-            joint.mimic = joint_of[driver].map(|driver| Mimic { driver, multiplier, offset });
+        mimic::Motion::Follows { at_first_hand, in_the_end } => {
+            let placed = |mimic: Mimic| joint_of[mimic.driver].map(|driver| Mimic { driver, ..mimic });
+            (joint.follows, joint.mimic) = (placed(at_first_hand), placed(in_the_end));
         }
     }
     joint

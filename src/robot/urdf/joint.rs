@@ -13,7 +13,7 @@ use super::report::Report;
 use super::{MAX_JOINTS, UrdfOptions, number};
 use crate::math::figure;
 use crate::robot::names::{list, quote};
-use crate::robot::{Defect, JointKind};
+use crate::robot::{Defect, JointKind, unbelievable};
 
 /// How far a vector's length may be from one before that is worth a note.
 const UNIT_TOLERANCE: f64 = 1e-3;
@@ -238,7 +238,7 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
 
     fn origin(&mut self) {
         let Some(node) = self.child(Known::ORIGIN) else { return };
-        let xyz = element::attribute(node, "xyz").and_then(|xyz| self.vector::<3>("origin", &xyz));
+        let xyz = element::attribute(node, "xyz").and_then(|xyz| self.sizes("origin", &xyz));
         let rpy = element::attribute(node, "rpy");
         let quaternion = element::attribute(node, "quat_xyzw");
         match (rpy, quaternion) {
@@ -254,7 +254,7 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
             }
             (_, None) => {}
         }
-        let rpy = rpy.and_then(|rpy| self.vector::<3>("origin", &rpy));
+        let rpy = rpy.and_then(|rpy| self.sizes("origin", &rpy));
         let xyz = xyz.unwrap_or_else(|| "0 0 0".to_owned());
         let rpy = rpy.unwrap_or_else(|| "0 0 0".to_owned());
         let _ = write!(self.joint.values, "<origin xyz=\"{xyz}\" rpy=\"{rpy}\"/>");
@@ -323,6 +323,18 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
         let values = format!("<mimic joint=\"driver\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>");
         self.joint.values.push_str(&values);
         self.joint.mimic = Some(Reference { name: target.value().to_owned(), offset: target.range().start });
+    }
+
+    /// As [`Self::vector`], of lengths or angles that an arm may have.
+    fn sizes(&mut self, element: &str, attribute: &Attribute<'a, 'i>) -> Option<String> {
+        let text = self.vector::<3>(element, attribute)?;
+        let values = number::vector::<3>(&text).unwrap_or_default();
+        if let Some(cause) = values.into_iter().find_map(unbelievable) {
+            let cause = format!("`{}` of `<{element}>`: {cause}", attribute.name());
+            self.fail(attribute.range().start, cause);
+            return None;
+        }
+        Some(text)
     }
 
     /// Returns the checked tokens of a vector, separated by single blanks.

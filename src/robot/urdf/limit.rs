@@ -54,7 +54,8 @@ fn missing(reader: &mut Reader<'_, '_, '_, '_>) {
     } else {
         let cause = format!(
             "it is {kind} and has no `<limit>`; add `<limit lower=\"...\" upper=\"...\" effort=\"...\" \
-             velocity=\"...\"/>`, or ask to assume it unlimited"
+             velocity=\"...\"/>`, or take it as unlimited \
+             (`--assume-unlimited`, in a scenario `assume_unlimited = true`)"
         );
         reader.fail(offset, cause);
     }

@@ -27,8 +27,9 @@ pub(super) fn read_links(
     report: &mut Report<'_>,
 ) -> Option<Vec<RawLink>> {
     let count = element::children_named(root, "link").count();
-    if count > MAX_JOINTS {
-        let cause = format!("the robot has {count} links, more than the {MAX_JOINTS} that are read");
+    // A tree has one link more than it has joints.
+    if count > MAX_JOINTS + 1 {
+        let cause = format!("the robot has {count} links, more than the {} that are read", MAX_JOINTS + 1);
         report.error(element::offset(root), cause);
         return None;
     }

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use super::joint::RawJoint;
 use super::report::Report;
-use crate::robot::JointKind;
 use crate::robot::names::{quote, short_list};
+use crate::robot::{JointKind, Mimic, unbelievable};
 
 /// How a joint moves once mimic chains are folded.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,8 +14,8 @@ pub(super) enum Motion {
     Own,
     /// It follows something that does not move, or follows with multiplier zero.
     Still { at: f64 },
-    /// As `multiplier * driver + offset`.
-    Follows { driver: usize, multiplier: f64, offset: f64 },
+    /// As its own element says, and as the joint says that drives it in the end.
+    Follows { at_first_hand: Mimic, in_the_end: Mimic },
 }
 
 /// Resolves every joint, in the order of the file.
@@ -131,7 +131,7 @@ fn motion(
     let (multiplier, offset) = ratio(&joints[index]);
     if multiplier == 0.0 {
         joints[index].warn(place, "it mimics with multiplier 0: taken as fixed", report);
-        return Motion::Still { at: offset };
+        return still(index, offset, joints, report);
     }
     match target_motion.unwrap_or(Motion::Own) {
         Motion::Own if kind == JointKind::Fixed => {
@@ -140,7 +140,7 @@ fn motion(
                 &format!("it mimics joint {name}, which is fixed: taken as fixed"),
                 report,
             );
-            Motion::Still { at: offset }
+            still(index, offset, joints, report)
         }
         Motion::Still { at } => {
             joints[index].warn(
@@ -148,13 +148,27 @@ fn motion(
                 &format!("it mimics joint {name}, which does not move: taken as fixed"),
                 report,
             );
-            Motion::Still { at: multiplier * at + offset }
+            still(index, multiplier * at + offset, joints, report)
         }
-        Motion::Own => limited(index, target, multiplier, offset, joints, report),
-        Motion::Follows { driver, multiplier: inner, offset: shift } => {
-            limited(index, driver, multiplier * inner, multiplier * shift + offset, joints, report)
+        followed => {
+            let at_first_hand = Mimic { driver: target, multiplier, offset };
+            let in_the_end = match followed {
+                Motion::Follows { in_the_end, .. } => at_first_hand.through(in_the_end),
+                _ => at_first_hand,
+            };
+            check_limits(index, in_the_end, joints, report);
+            Motion::Follows { at_first_hand, in_the_end }
         }
     }
+}
+
+/// A joint that stands where no arm does is refused.
+fn still(index: usize, at: f64, joints: &mut [RawJoint], report: &mut Report<'_>) -> Motion {
+    if let Some(cause) = unbelievable(at) {
+        let place = joints[index].mimic.as_ref().map_or(joints[index].offset, |reference| reference.offset);
+        joints[index].fail(place, format!("where it stands still: {cause}"), report);
+    }
+    Motion::Still { at }
 }
 
 fn ratio(joint: &RawJoint) -> (f64, f64) {
@@ -163,14 +177,8 @@ fn ratio(joint: &RawJoint) -> (f64, f64) {
 }
 
 /// Refuses a follower whose own limits leave its driver no position.
-fn limited(
-    index: usize,
-    driver: usize,
-    multiplier: f64,
-    offset: f64,
-    joints: &mut [RawJoint],
-    report: &mut Report<'_>,
-) -> Motion {
+fn check_limits(index: usize, in_the_end: Mimic, joints: &mut [RawJoint], report: &mut Report<'_>) {
+    let Mimic { driver, multiplier, offset } = in_the_end;
     let limits = |joint: &RawJoint| {
         let limit = joint.read.as_ref().map(|read| &read.limit);
         limit.map_or((f64::NEG_INFINITY, f64::INFINITY), |limit| (limit.lower, limit.upper))
@@ -192,5 +200,4 @@ fn limited(
         );
         joints[index].fail(place, reason, report);
     }
-    Motion::Follows { driver, multiplier, offset }
 }

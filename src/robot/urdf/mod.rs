@@ -33,7 +33,7 @@ pub(super) use visual::read as read_visuals;
 
 /// Longest text that is read, in bytes (64 MiB).
 pub const MAX_BYTES: usize = 64 << 20;
-/// Most links and most joints that are read.
+/// Most joints that are read; of links one more, as a tree has.
 pub const MAX_JOINTS: usize = 20_000;
 /// Deepest nesting of elements that is read.
 pub const MAX_DEPTH: usize = 256;

@@ -56,6 +56,8 @@ fn unreadable(token: &str) -> String {
         )
     } else if lower.trim_start_matches(['-', '+']).starts_with("0x") {
         format!("{shown} is not a number: hexadecimal is not read, write it in decimal")
+    } else if token.contains("$(") {
+        format!("{shown} is not a number: this is xacro that has not been expanded, run `xacro` on it first")
     } else if lower.contains("pi") {
         format!(
             "{shown} is not a number: URDF has no `pi` (xacro has), write 3.141592653589793 or its multiple"

@@ -50,7 +50,7 @@ pub(super) struct Outline<'a> {
     /// Tags still open at the end.
     pub(super) open: Vec<Tag<'a>>,
     pub(super) stop: Option<Stop<'a>>,
-    /// Where `${` or a `xacro:` element first stands outside comments.
+    /// Where `${`, `$(arg ` or a `xacro:` element first stands outside comments.
     pub(super) xacro: Option<usize>,
     /// Bodies of comments that hold `--`, which XML forbids and URDF files have.
     pub(super) dashed_comments: Vec<Range<usize>>,
@@ -92,7 +92,7 @@ impl<'a> Outline<'a> {
 
     fn look_for_xacro(&mut self, characters: &str, offset: usize) {
         if self.xacro.is_none()
-            && let Some(found) = characters.find("${")
+            && let Some(found) = ["${", "$(arg "].iter().filter_map(|mark| characters.find(mark)).min()
         {
             self.xacro = Some(offset + found);
         }

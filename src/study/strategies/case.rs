@@ -186,6 +186,8 @@ impl OrderCase {
             tool: scenario::Mount::default(),
             calibration: None,
             lock: BTreeMap::new(),
+            independent: false,
+            assume_unlimited: false,
             path: self.path.spec(self.smallest_singular_value, self.arm.task, self.time_law),
         };
         Scenario {
