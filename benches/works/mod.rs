@@ -84,10 +84,10 @@ fn by_size(name: &str) -> Option<Work> {
     }
 }
 
-/// An arm of that many joints with axes at right angles.
+/// An arm of that many joints, the first two of them with parallel axes, the others with axes at right angles.
 fn snake(joints: usize) -> (Chain, Vec<f64>) {
     let mut table = DhTable::planar("snake", &vec![0.2; joints]);
-    for (i, row) in table.rows.iter_mut().enumerate().take(joints).skip(1) {
+    for (i, row) in table.rows.iter_mut().enumerate().take(joints).skip(2) {
         row.alpha = if i % 2 == 0 { -FRAC_PI_2 } else { FRAC_PI_2 };
     }
     let robot = Robot::from_dh(&table).expect("a table without fault");
