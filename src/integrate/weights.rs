@@ -74,16 +74,21 @@ impl<T: Scalar> Weights<T> {
         g: Option<&Ring<T>>,
         next: &mut [[T; BLOCK]],
     ) -> bool {
-        with_instructions(level, Combination { weights: self, x, f, g, next })
+        with_instructions(level, Combination { history: History { weights: self, x, f, g }, next })
     }
 }
 
-/// One combination of the history.
-struct Combination<'a, T> {
+/// What the next state is combined of.
+struct History<'a, T> {
     weights: &'a Weights<T>,
     x: &'a Ring<T>,
     f: &'a Ring<T>,
     g: Option<&'a Ring<T>>,
+}
+
+/// One combination of the history.
+struct Combination<'a, T> {
+    history: History<'a, T>,
     next: &'a mut [[T; BLOCK]],
 }
 
@@ -92,48 +97,44 @@ impl<T: Scalar> Kernel for Combination<'_, T> {
 
     #[inline(always)]
     fn run<S: Simd>(self, _: S) -> bool {
-        let Self { weights, x, f, g, next } = self;
-        let history = (weights, x, f, g);
+        let Self { history, next } = self;
         let mut nothing = [T::zero(); BLOCK];
         let (fours, rest) = next.as_chunks_mut::<4>();
         for (k, next) in fours.iter_mut().enumerate() {
-            combine_blocks(history, 4 * k, next, &mut nothing);
+            history.combine(4 * k, next, &mut nothing);
         }
         let from = 4 * fours.len();
         if let Some(next) = rest.first_chunk_mut::<3>() {
-            combine_blocks(history, from, next, &mut nothing);
+            history.combine(from, next, &mut nothing);
         } else if let Some(next) = rest.first_chunk_mut::<2>() {
-            combine_blocks(history, from, next, &mut nothing);
+            history.combine(from, next, &mut nothing);
         } else if let Some(next) = rest.first_chunk_mut::<1>() {
-            combine_blocks(history, from, next, &mut nothing);
+            history.combine(from, next, &mut nothing);
         }
         nothing.iter().all(|entry| entry.is_finite())
     }
 }
 
-/// Combines the `B` blocks that begin at the block `from`, whose sums stay in registers; `nothing` stays finite if they are.
-#[inline(always)]
-fn combine_blocks<T: Scalar, const B: usize>(
-    (weights, x, f, g): (&Weights<T>, &Ring<T>, &Ring<T>, Option<&Ring<T>>),
-    from: usize,
-    next: &mut [[T; BLOCK]; B],
-    nothing: &mut [T; BLOCK],
-) {
-    let mut sums = [[T::zero(); BLOCK]; B];
-    if let Some(g) = g {
-        add(&weights.second, g, from, &mut sums);
-    }
-    add(&weights.first, f, from, &mut sums);
-    let newest = x.part::<B>(0, from);
-    for &(age, weight) in &weights.older.0 {
-        let sample = x.part::<B>(age, from);
-        for b in 0..B {
-            sums[b] = std::array::from_fn(|i| sums[b][i] + weight * (sample[b][i] - newest[b][i]));
+impl<T: Scalar> History<'_, T> {
+    /// Combines the `B` blocks that begin at the block `from`, whose sums stay in registers; `nothing` stays finite if they are.
+    #[inline(always)]
+    fn combine<const B: usize>(&self, from: usize, next: &mut [[T; BLOCK]; B], nothing: &mut [T; BLOCK]) {
+        let mut sums = [[T::zero(); BLOCK]; B];
+        if let Some(g) = self.g {
+            add(&self.weights.second, g, from, &mut sums);
         }
-    }
-    for b in 0..B {
-        next[b] = std::array::from_fn(|i| sums[b][i] + newest[b][i]);
-        *nothing = std::array::from_fn(|i| nothing[i] + (next[b][i] - next[b][i]));
+        add(&self.weights.first, self.f, from, &mut sums);
+        let newest = self.x.part::<B>(0, from);
+        for &(age, weight) in &self.weights.older.0 {
+            let sample = self.x.part::<B>(age, from);
+            for b in 0..B {
+                sums[b] = std::array::from_fn(|i| sums[b][i] + weight * (sample[b][i] - newest[b][i]));
+            }
+        }
+        for b in 0..B {
+            next[b] = std::array::from_fn(|i| sums[b][i] + newest[b][i]);
+            *nothing = std::array::from_fn(|i| nothing[i] + next[b][i] * T::zero());
+        }
     }
 }
 
