@@ -2,9 +2,10 @@
 #![cfg(feature = "proptest")]
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
-use kinstep::law::{Demand, Law, Pseudoinverse, Resolution};
-use kinstep::nalgebra::Vector6;
+use kinstep::law::{Instant, JointVelocity, Law, Pseudoinverse, Resolution, SystemShape};
+use kinstep::nalgebra::{DMatrix, Vector6};
 use kinstep::study::strategies::{ConfigurationCase, away_from_singularity, towards_singularity};
+use kinstep::task::TaskRows;
 use proptest::prelude::*;
 
 const THRESHOLD: f64 = 1e-4;
@@ -21,11 +22,25 @@ fn resolve(
     let wanted = Vector6::from_fn(|row, _| if row < rows { direction[row] } else { 0.0 });
     let wanted = wanted / wanted.norm().max(1e-3);
     let mut law = Pseudoinverse::new().with_threshold(THRESHOLD);
-    law.prepare(rows, chain.dof(), chain.reach());
+    law.prepare(&SystemShape::of_one_task(rows, chain.dof(), chain.reach()));
     let (mut f, mut g) = (vec![0.0; chain.dof()], vec![0.0; chain.dof()]);
-    let rest = Vector6::zeros();
-    let demand = Demand { rows, jacobian: &columns, q: &case.q, feedforward: &wanted, feedback: &rest };
-    let resolution = law.resolve(&demand, &mut f, &mut g);
+    let rest = vec![0.0; chain.dof()];
+    let task = TaskRows {
+        feedforward: wanted.as_slice()[..rows].to_vec(),
+        jacobian: DMatrix::from_fn(rows, chain.dof(), |row, column| columns[column][row]),
+        ..TaskRows::zeros(rows, chain.dof())
+    };
+    let instant = Instant {
+        t: 0.0,
+        sigma: 0.01,
+        q: &case.q,
+        previous_velocity: &rest,
+        limits: &[],
+        tasks: &[task],
+        next: None,
+    };
+    let mut answer = JointVelocity { feedforward: &mut f, feedback: &mut g };
+    let resolution = law.resolve(&instant, &mut answer).unwrap();
     assert!(g.iter().all(|velocity| *velocity == 0.0));
     (columns, f, wanted, resolution)
 }

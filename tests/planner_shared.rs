@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::formula::FormulaTable;
-use kinstep::law::{Criterion, Pseudoinverse};
+use kinstep::law::{Criterion, Instant, Pseudoinverse};
 use kinstep::nalgebra::{DMatrix, DVector, Vector3, Vector6};
 use kinstep::planner::{Arm, Plan, Planner, PlannerError, Start};
 use kinstep::robot::{Chain, Robot, embedded};
@@ -216,12 +216,12 @@ fn given_states_hold_the_union_of_the_joints() {
 struct Homing;
 
 impl Criterion for Homing {
-    fn velocity(&self, _: &[f64], c: &mut [f64]) {
+    fn velocity(&mut self, _: &Instant<'_>, c: &mut [f64]) {
         c.fill(0.0);
     }
 
-    fn rate(&self) -> f64 {
-        1.0
+    fn rate(&self) -> Option<f64> {
+        Some(1.0)
     }
 }
 

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use kinstep::formula::FormulaTable;
-use kinstep::law::{Demand, Law, Pseudoinverse, Resolution};
+use kinstep::law::{Infeasible, Instant, JointVelocity, Law, Pseudoinverse, Resolution, SystemShape};
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
 use kinstep::planner::{Arm, Batch, Plan, Planner, run_together};
 use kinstep::robot::embedded;
@@ -13,12 +13,16 @@ use kinstep::task::{Circle, Motion, Planar, Plane, Quintic, TaskKind};
 struct Apart(Pseudoinverse);
 
 impl Law for Apart {
-    fn prepare(&mut self, rows: usize, joints: usize, length: f64) {
-        self.0.prepare(rows, joints, length);
+    fn prepare(&mut self, shape: &SystemShape) {
+        self.0.prepare(shape);
     }
 
-    fn resolve(&mut self, demand: &Demand<'_>, feedforward: &mut [f64], feedback: &mut [f64]) -> Resolution {
-        self.0.resolve(demand, feedforward, feedback)
+    fn resolve(
+        &mut self,
+        instant: &Instant<'_>,
+        velocity: &mut JointVelocity<'_>,
+    ) -> Result<Resolution, Infeasible> {
+        self.0.resolve(instant, velocity)
     }
 
     fn threshold(&self) -> f64 {

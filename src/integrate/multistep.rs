@@ -200,6 +200,15 @@ impl<T: Scalar> Multistep<T> {
         self.status
     }
 
+    /// Writes what the history contributes to the state after `x_n`, which is to be evaluated next, and returns what its two
+    /// parts are multiplied by there: `x_{n+1} = known + first f(t_n, x_n) + second g(t_n, x_n)`.
+    ///
+    /// While a start is under way that is no row, it is the state after one Euler step.
+    pub(crate) fn write_next_state(&self, known: &mut [T]) -> [T; 2] {
+        known.copy_from_slice(self.x.get(0));
+        [self.sigma; 2]
+    }
+
     /// One step: [`evaluate`](Self::evaluate), then [`advance`](Self::advance).
     pub fn step(&mut self, field: &mut impl Field<T>) -> Status {
         if self.status == Status::Running {

@@ -1,13 +1,11 @@
-use super::least_norm::least_norm;
-use super::{Criterion, Demand, Law, Resolution};
-use crate::math::{Kernel, Lane, Lanes, SingularValues, level, with_instructions};
-use fearless_simd::Simd;
-use nalgebra::Vector6;
+use super::damping::{DampedInverse, default_threshold, is_regular};
+use super::fixed_rows::FixedRows;
+use super::stacked::StackedRows;
+use super::{Criterion, Infeasible, Instant, JointVelocity, Law, Resolution, SystemShape};
+use crate::math::RowRotations;
+use crate::task::TaskRows;
 
-/// The default threshold, as a fraction of the length scale of the chain.
-const RELATIVE_THRESHOLD: f64 = 1e-3;
-
-/// The least-norm law `J^+ v`, with a null-space criterion if one is set.
+/// The least-norm law `J^+ v` for all tasks of a system at once, with null-space criteria if any are set.
 ///
 /// While the smallest singular value of `J` is certain to lie above the threshold, `J^+ v = J^T (J J^T)^-1 v` by a
 /// Cholesky factorisation of the Gram matrix. Otherwise a one-sided Jacobi decomposition decides, and below the
@@ -15,22 +13,37 @@ const RELATIVE_THRESHOLD: f64 = 1e-3;
 /// `lambda^2 = epsilon^2 (1 - (s_min / epsilon)^2)`, which sets in continuously (Nakamura and Hanafusa 1986,
 /// Chiaverini 1997). The null-space projector is never damped: it drops the directions below the threshold.
 ///
-/// The threshold is 1e-3 of the chain's reach (of at most one metre where orientation is asked for too), unless given.
+/// The threshold is 1e-3 of the reach of a task's tips (of at most one metre where orientation is asked for too), the largest
+/// of all tasks, unless given. Tasks are met exactly where they can be, so their weights do not matter; tasks of different
+/// priorities are refused.
 #[derive(Default)]
 pub struct Pseudoinverse {
     given_threshold: Option<f64>,
-    criterion: Option<Box<dyn Criterion>>,
+    criteria: Vec<Box<dyn Criterion>>,
     threshold: f64,
-    c: Vec<f64>,
-    decomposition: Option<Decomposition>,
+    workspace: Option<Workspace>,
 }
 
-/// The decomposition's workspace in the size of the task.
-#[derive(Debug)]
-enum Decomposition {
-    Two(SingularValues<2>),
-    Three(SingularValues<3>),
-    Six(SingularValues<6>),
+/// What a resolution needs, in the size of the system.
+struct Workspace {
+    gram: Gram,
+    rotations: RowRotations,
+    /// The sum of the criteria, and one of them.
+    c: Vec<f64>,
+    summand: Vec<f64>,
+    /// `phi'` and `-k e` of all tasks.
+    feedforward: Vec<f64>,
+    feedback: Vec<f64>,
+    /// `phi' - J c`.
+    corrected: Vec<f64>,
+}
+
+/// The factorisation in the size of the tasks.
+enum Gram {
+    Two,
+    Three,
+    Six,
+    Stacked(StackedRows),
 }
 
 impl std::fmt::Debug for Pseudoinverse {
@@ -52,214 +65,231 @@ impl Pseudoinverse {
         self
     }
 
-    /// The same with a criterion for the null space.
+    /// The same with a criterion for the null space; criteria add up.
     #[must_use]
     pub fn with_criterion(mut self, criterion: impl Criterion + 'static) -> Self {
-        self.criterion = Some(Box::new(criterion));
+        self.criteria.push(Box::new(criterion));
         self
-    }
-
-    fn resolve_rows<const M: usize>(
-        &mut self,
-        demand: &Demand<'_>,
-        pick: impl Fn(&mut Decomposition) -> Option<&mut SingularValues<M>>,
-        f: &mut [f64],
-        g: &mut [f64],
-    ) -> Resolution {
-        if let Some(criterion) = &self.criterion {
-            criterion.velocity(demand.q, &mut self.c);
-        }
-        let homogeneous = self.criterion.is_some().then_some(&self.c[..]);
-        let regular = Regular::<M> { demand, homogeneous, f: &mut *f, g: &mut *g };
-        let (bound, is_definite) = with_instructions(level(), regular);
-        if is_definite && bound > self.threshold {
-            return Resolution { smallest_singular_value: bound, damped: false };
-        }
-        let Some(decomposition) = self.decomposition.as_mut().and_then(pick) else {
-            return Resolution { smallest_singular_value: 0.0, damped: true };
-        };
-        decomposition.compute(demand.jacobian);
-        resolve_near_singular(decomposition, self.threshold, demand, homogeneous, f, g)
     }
 }
 
 impl Law for Pseudoinverse {
-    fn prepare(&mut self, rows: usize, joints: usize, length: f64) {
-        let length = if rows == 6 { length.min(1.0) } else { length };
-        self.threshold = self.given_threshold.unwrap_or(RELATIVE_THRESHOLD * length);
-        self.c = vec![0.0; joints];
-        self.decomposition = Some(match rows {
-            2 => Decomposition::Two(SingularValues::with_capacity(joints)),
-            3 => Decomposition::Three(SingularValues::with_capacity(joints)),
-            _ => Decomposition::Six(SingularValues::with_capacity(joints)),
-        });
+    fn prepare(&mut self, shape: &SystemShape) {
+        let thresholds = shape.tasks.iter().map(|task| default_threshold(task.length, task.mixes_units));
+        self.threshold = self.given_threshold.unwrap_or_else(|| thresholds.fold(0.0, f64::max));
+        for criterion in &mut self.criteria {
+            criterion.prepare(shape);
+        }
+        self.workspace = Some(Workspace::new(shape));
     }
 
-    fn resolve(&mut self, demand: &Demand<'_>, feedforward: &mut [f64], feedback: &mut [f64]) -> Resolution {
-        match demand.rows {
-            2 => self.resolve_rows::<2>(
-                demand,
-                |d| if let Decomposition::Two(s) = d { Some(s) } else { None },
-                feedforward,
-                feedback,
-            ),
-            3 => self.resolve_rows::<3>(
-                demand,
-                |d| if let Decomposition::Three(s) = d { Some(s) } else { None },
-                feedforward,
-                feedback,
-            ),
-            _ => self.resolve_rows::<6>(
-                demand,
-                |d| if let Decomposition::Six(s) = d { Some(s) } else { None },
-                feedforward,
-                feedback,
-            ),
-        }
+    fn resolve(
+        &mut self,
+        instant: &Instant<'_>,
+        velocity: &mut JointVelocity<'_>,
+    ) -> Result<Resolution, Infeasible> {
+        let Some(workspace) = &mut self.workspace else { return Err(Infeasible::default()) };
+        workspace.collect(instant.tasks);
+        workspace.pull(&mut self.criteria, instant);
+        let has_criteria = !self.criteria.is_empty();
+        let resolution = workspace.resolve(instant.tasks, self.threshold, has_criteria, velocity);
+        let criterion_rate = self.criteria.iter().map(|criterion| criterion.rate_at(instant)).sum();
+        Ok(Resolution { criterion_rate, ..resolution })
     }
 
     fn threshold(&self) -> f64 {
         self.threshold
     }
 
-    fn least_norm_threshold(&self) -> Option<f64> {
-        self.criterion.is_none().then_some(self.threshold)
+    fn objection(&self, shape: &SystemShape) -> Option<String> {
+        let [first, rest @ ..] = &shape.tasks[..] else { return Some("needs a task to resolve".to_owned()) };
+        if let Some(task) = rest.iter().find(|task| task.priority != first.priority) {
+            return Some(format!(
+                "meets all tasks alike, and `{}` has priority {} beside the {} of `{}`",
+                task.name, task.priority, first.priority, first.name
+            ));
+        }
+        self.criteria.iter().find_map(|criterion| criterion.objection(shape))
+    }
+
+    fn fast_path(&self) -> Option<f64> {
+        self.criteria.is_empty().then_some(self.threshold)
     }
 
     fn criterion_rate(&self) -> Option<f64> {
-        self.criterion.as_ref().map(|criterion| criterion.rate())
+        let known = self.criteria.iter().filter_map(|criterion| criterion.rate());
+        known.reduce(|sum, rate| sum + rate)
     }
 }
 
-/// `f = c + J^T (J J^T)^-1 (phi' - J c)` and `g = J^T (J J^T)^-1 (-k e)`.
-struct Regular<'a, const M: usize> {
-    demand: &'a Demand<'a>,
-    homogeneous: Option<&'a [f64]>,
-    f: &'a mut [f64],
-    g: &'a mut [f64],
-}
-
-impl<const M: usize> Kernel for Regular<'_, M> {
-    /// The bound of the smallest singular value, and whether any of this means something.
-    type Output = (f64, bool);
-
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> (f64, bool) {
-        let Self { demand, homogeneous, f, g } = self;
-        let jacobian = demand.jacobian;
-        let mut wanted = head::<M>(demand.feedforward);
-        if let Some(c) = homogeneous {
-            subtract_image(jacobian, c, &mut wanted);
-        }
-        let lanes = |velocity: [f64; M]| velocity.map(|entry| Lane::splat(simd, entry));
-        let found = least_norm(
-            simd,
-            jacobian,
-            #[inline(always)]
-            |column, row| Lane::splat(simd, column[row]),
-            #[inline(always)]
-            || [lanes(wanted), lanes(head::<M>(demand.feedback))],
-            #[inline(always)]
-            |column, forward: Lane<S>, back: Lane<S>| {
-                f[column] = homogeneous.map_or(forward.value, |c| c[column] + forward.value);
-                g[column] = back.value;
+impl Workspace {
+    fn new(shape: &SystemShape) -> Self {
+        let (rows, joints) = (shape.rows(), shape.joints.len());
+        Self {
+            gram: match (shape.tasks.len(), rows) {
+                (1, 2) => Gram::Two,
+                (1, 3) => Gram::Three,
+                (1, 6) => Gram::Six,
+                _ => Gram::Stacked(StackedRows::new(shape)),
             },
-        );
-        (found.bound.value, found.smallest_pivot.value > 0.0)
-    }
-}
-
-fn resolve_near_singular<const M: usize>(
-    decomposition: &SingularValues<M>,
-    threshold: f64,
-    demand: &Demand<'_>,
-    homogeneous: Option<&[f64]>,
-    f: &mut [f64],
-    g: &mut [f64],
-) -> Resolution {
-    let smallest = decomposition.smallest();
-    let damping = (threshold * threshold - smallest * smallest).max(0.0);
-    let damped = |s: f64| s / (s * s + damping);
-    f.fill(0.0);
-    g.fill(0.0);
-    decomposition.apply(&head::<M>(demand.feedforward), damped, f);
-    decomposition.apply(&head::<M>(demand.feedback), damped, g);
-    if let Some(c) = homogeneous {
-        let mut image = [0.0; M];
-        subtract_image(demand.jacobian, c, &mut image);
-        decomposition.apply(&image, |s| if s < threshold { 0.0 } else { s.recip() }, f);
-        for (entry, c) in f.iter_mut().zip(c) {
-            *entry += c;
+            rotations: RowRotations::with_capacity(rows, joints),
+            c: vec![0.0; joints],
+            summand: vec![0.0; joints],
+            feedforward: vec![0.0; rows],
+            feedback: vec![0.0; rows],
+            corrected: vec![0.0; rows],
         }
     }
-    Resolution { smallest_singular_value: smallest, damped: damping > 0.0 }
-}
 
-fn head<const M: usize>(v: &Vector6<f64>) -> [f64; M] {
-    std::array::from_fn(|i| v[i])
-}
+    /// Puts what all tasks ask for one after the other.
+    fn collect(&mut self, tasks: &[TaskRows]) {
+        let mut first = 0;
+        for task in tasks {
+            let rows = first..first + task.rows();
+            self.feedforward[rows.clone()].copy_from_slice(&task.feedforward);
+            self.feedback[rows.clone()].copy_from_slice(&task.feedback);
+            first = rows.end;
+        }
+        self.corrected.copy_from_slice(&self.feedforward);
+    }
 
-/// Subtracts the first `M` rows of `J c` from `v`.
-fn subtract_image<const M: usize>(jacobian: &[Vector6<f64>], c: &[f64], v: &mut [f64; M]) {
-    for (column, &velocity) in jacobian.iter().zip(c) {
-        for row in 0..M {
-            v[row] -= column[row] * velocity;
+    /// Adds the criteria up, and takes from what the tasks ask for what they would do to it.
+    fn pull(&mut self, criteria: &mut [Box<dyn Criterion>], instant: &Instant<'_>) {
+        self.c.fill(0.0);
+        for criterion in &mut *criteria {
+            criterion.velocity(instant, &mut self.summand);
+            add(&self.summand, &mut self.c);
+        }
+        if !criteria.is_empty() {
+            subtract_image(instant.tasks, &self.c, &mut self.corrected);
         }
     }
+
+    fn resolve(
+        &mut self,
+        tasks: &[TaskRows],
+        threshold: f64,
+        has_criteria: bool,
+        velocity: &mut JointVelocity<'_>,
+    ) -> Resolution {
+        let (bound, smallest_pivot) = self.solve(tasks, velocity);
+        if is_regular(bound, smallest_pivot, threshold) {
+            if has_criteria {
+                add(&self.c, velocity.feedforward);
+            }
+            return Resolution { smallest_singular_value: bound, ..Resolution::default() };
+        }
+        decompose(&mut self.rotations, tasks, self.c.len());
+        let inverse = DampedInverse::new(&self.rotations, threshold);
+        inverse.apply(&self.feedforward, velocity.feedforward);
+        inverse.apply(&self.feedback, velocity.feedback);
+        if has_criteria {
+            let image = &mut self.corrected;
+            image.fill(0.0);
+            subtract_image(tasks, &self.c, image);
+            inverse.add_undamped(image, velocity.feedforward);
+            add(&self.c, velocity.feedforward);
+        }
+        inverse.resolution()
+    }
+
+    /// Writes the undamped solution, and returns a lower bound of the smallest singular value and the smallest pivot: where
+    /// this is not positive, neither means anything.
+    fn solve(&mut self, tasks: &[TaskRows], velocity: &mut JointVelocity<'_>) -> (f64, f64) {
+        let wanted = [&self.corrected[..], &self.feedback[..]];
+        let (f, g) = (&mut *velocity.feedforward, &mut *velocity.feedback);
+        match (&mut self.gram, tasks) {
+            (Gram::Two, [task]) => FixedRows::<2>::of(task, wanted, f, g).solve(),
+            (Gram::Three, [task]) => FixedRows::<3>::of(task, wanted, f, g).solve(),
+            (Gram::Six, [task]) => FixedRows::<6>::of(task, wanted, f, g).solve(),
+            (Gram::Stacked(stacked), _) => {
+                stacked.stack(tasks);
+                stacked.solve(wanted, f, g).map_or((0.0, 0.0), |bound| (bound, 1.0))
+            }
+            _ => (0.0, 0.0),
+        }
+    }
+}
+
+fn add(summand: &[f64], sum: &mut [f64]) {
+    for (sum, summand) in sum.iter_mut().zip(summand) {
+        *sum += summand;
+    }
+}
+
+/// Subtracts `J c` from the rows of all tasks, one task after the other.
+fn subtract_image(tasks: &[TaskRows], c: &[f64], rows: &mut [f64]) {
+    let mut first = 0;
+    for task in tasks {
+        let rows = &mut rows[first..first + task.rows()];
+        for (column, velocity) in task.jacobian.column_iter().zip(c) {
+            for (row, entry) in rows.iter_mut().zip(column.iter()) {
+                *row -= entry * velocity;
+            }
+        }
+        first += task.rows();
+    }
+}
+
+/// Decomposes the stacked Jacobian of all tasks.
+fn decompose(rotations: &mut RowRotations, tasks: &[TaskRows], joints: usize) {
+    rotations.compute(joints, |row, column| {
+        let mut row = row;
+        for task in tasks {
+            if row < task.rows() {
+                return task.jacobian[(row, column)];
+            }
+            row -= task.rows();
+        }
+        0.0
+    });
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::TaskShape;
+    use super::super::trial::{prepared, resolve, task};
     use super::*;
+    use nalgebra::Vector6;
     use proptest::prelude::*;
 
     struct Homing;
 
     impl Criterion for Homing {
-        fn velocity(&self, q: &[f64], c: &mut [f64]) {
-            for (c, q) in c.iter_mut().zip(q) {
+        fn velocity(&mut self, instant: &Instant<'_>, c: &mut [f64]) {
+            for (c, q) in c.iter_mut().zip(instant.q) {
                 *c = -2.0 * q;
             }
         }
 
-        fn rate(&self) -> f64 {
-            2.0
+        fn rate(&self) -> Option<f64> {
+            Some(2.0)
         }
-    }
-
-    fn prepared(law: Pseudoinverse, rows: usize, joints: usize) -> Pseudoinverse {
-        let mut law = law;
-        law.prepare(rows, joints, 1.0);
-        law
     }
 
     fn image(columns: &[Vector6<f64>], velocities: &[f64]) -> Vector6<f64> {
         columns.iter().zip(velocities).map(|(c, v)| c * *v).sum()
     }
 
-    fn demand<'a>(columns: &'a [Vector6<f64>], q: &'a [f64], v: &'a Vector6<f64>, rows: usize) -> Demand<'a> {
-        Demand { rows, jacobian: columns, q, feedforward: v, feedback: v }
-    }
-
     proptest! {
         #[test]
         fn the_four_conditions_of_penrose_hold_in_effect(
             entries in proptest::collection::vec(-1.0..1.0_f64, 42), q in proptest::collection::vec(-1.0..1.0_f64, 7),
-            v in proptest::array::uniform6(-1.0..1.0_f64), rows in prop::sample::select(vec![2_usize, 3, 6]),
+            v in proptest::array::uniform6(-1.0..1.0_f64), rows in 1..=6_usize,
         ) {
             let columns: Vec<_> = entries.chunks(6).map(Vector6::from_column_slice).collect();
+            let demand = [task(rows, &columns, &v, &v)];
             let v = Vector6::from(v);
-            let (mut f, mut g) = (vec![0.0; 7], vec![0.0; 7]);
             let mut law = prepared(Pseudoinverse::new(), rows, 7);
-            let resolution = law.resolve(&demand(&columns, &q, &v, rows), &mut f, &mut g);
+            let ([f, g], resolution) = resolve(&mut law, &q, &demand);
             prop_assume!(resolution.smallest_singular_value > 0.02);
             prop_assert_eq!(&f, &g);
             // The demand is met, and the answer has no component that the rows do not span (least norm).
             let met = image(&columns, &f);
             prop_assert!((met - v).rows(0, rows).norm() < 1e-9);
             let mut homed = prepared(Pseudoinverse::new().with_criterion(Homing), rows, 7);
-            let mut h = vec![0.0; 7];
-            homed.resolve(&demand(&columns, &q, &v, rows), &mut h, &mut g);
+            let ([h, _], resolution) = resolve(&mut homed, &q, &demand);
+            prop_assert_eq!(resolution.criterion_rate, 2.0);
             prop_assert!((image(&columns, &h) - v).rows(0, rows).norm() < 1e-9, "the criterion leaves the task alone");
             let null: Vec<f64> = h.iter().zip(&f).map(|(a, b)| a - b).collect();
             let dot: f64 = null.iter().zip(&f).map(|(a, b)| a * b).sum();
@@ -269,17 +299,18 @@ mod tests {
         #[test]
         fn both_ways_agree_where_both_may_be_used(
             entries in proptest::collection::vec(-1.0..1.0_f64, 42), v in proptest::array::uniform6(-1.0..1.0_f64),
+            rows in 4..=6_usize,
         ) {
             let columns: Vec<_> = entries.chunks(6).map(Vector6::from_column_slice).collect();
-            let (v, q) = (Vector6::from(v), [0.3; 7]);
-            let smallest = SingularValues::<6>::of(&columns).smallest();
-            prop_assume!(smallest > 0.02);
-            let (mut f, mut g, mut h) = (vec![0.0; 7], vec![0.0; 7], vec![0.0; 7]);
+            let (demand, q) = ([task(rows, &columns, &v, &v)], [0.3; 7]);
+            let mut rotations = RowRotations::with_capacity(rows, 7);
+            rotations.compute(7, |row, column| columns[column][row]);
+            prop_assume!(rotations.smallest() > 0.02);
             // A threshold just below the smallest singular value forces the decomposition, yet damps nothing.
-            let forced = Pseudoinverse::new().with_threshold(smallest * 0.999).with_criterion(Homing);
-            let mut plain = prepared(Pseudoinverse::new().with_criterion(Homing), 6, 7);
-            plain.resolve(&demand(&columns, &q, &v, 6), &mut f, &mut g);
-            let resolution = prepared(forced, 6, 7).resolve(&demand(&columns, &q, &v, 6), &mut h, &mut g);
+            let forced = Pseudoinverse::new().with_threshold(rotations.smallest() * 0.999).with_criterion(Homing);
+            let mut plain = prepared(Pseudoinverse::new().with_criterion(Homing), rows, 7);
+            let ([f, _], _) = resolve(&mut plain, &q, &demand);
+            let ([h, _], resolution) = resolve(&mut prepared(forced, rows, 7), &q, &demand);
             prop_assert!(!resolution.damped);
             for (a, b) in f.iter().zip(&h) {
                 prop_assert!((a - b).abs() < 1e-8);
@@ -290,17 +321,129 @@ mod tests {
     #[test]
     fn damping_acts_below_the_threshold_and_bounds_the_velocity() {
         let column = |x: f64, y: f64| Vector6::new(x, y, 0.0, 0.0, 0.0, 0.0);
-        let v = Vector6::new(0.0, 1.0, 0.0, 0.0, 0.0, 0.0);
+        let v = [0.0, 1.0];
         let mut law = prepared(Pseudoinverse::new().with_threshold(0.1), 2, 2);
-        let (mut f, mut g) = ([0.0; 2], [0.0; 2]);
         for tilt in [0.0, 1e-9, 1e-3, 0.05] {
-            let resolution = law.resolve(
-                &demand(&[column(1.0, 0.0), column(1.0, tilt)], &[0.0; 2], &v, 2),
-                &mut f,
-                &mut g,
-            );
+            let demand = [task(2, &[column(1.0, 0.0), column(1.0, tilt)], &v, &v)];
+            let ([f, _], resolution) = resolve(&mut law, &[0.0; 2], &demand);
             assert!(resolution.damped && resolution.smallest_singular_value < 0.1);
             assert!(f.iter().all(|x| x.abs() <= 1.0 / 0.1), "{f:?}");
         }
+    }
+
+    /// Two tasks of six rows; the first `shared` columns move both, then six move the first and seven the second.
+    fn stacked(entries: &[f64], shared: usize, [v, w]: [&[f64]; 2]) -> (SystemShape, Vec<TaskRows>) {
+        let joints = shared + 13;
+        let moved = [
+            (0..shared + 6).collect::<Vec<usize>>(),
+            (0..shared).chain(shared + 6..joints).collect::<Vec<usize>>(),
+        ];
+        let mut shape = SystemShape::of_one_task(6, joints, 1.0);
+        let alike = shape.tasks[0].clone();
+        shape.tasks =
+            moved.iter().map(|joints| TaskShape { joints: joints.clone(), ..alike.clone() }).collect();
+        let rows = moved.iter().enumerate().map(|(which, moved)| {
+            let mut rows = TaskRows::zeros(6, joints);
+            for &joint in moved {
+                rows.jacobian.column_mut(joint).copy_from_slice(&entries[12 * joint + 6 * which..][..6]);
+            }
+            rows.feedforward.copy_from_slice(&v[6 * which..][..6]);
+            rows.feedback.copy_from_slice(&w[6 * which..][..6]);
+            rows
+        });
+        (shape, rows.collect())
+    }
+
+    fn image_of_all(tasks: &[TaskRows], velocity: &[f64]) -> Vec<f64> {
+        let velocity = nalgebra::DVector::from_column_slice(velocity);
+        tasks
+            .iter()
+            .flat_map(|task| (&task.jacobian * &velocity).iter().copied().collect::<Vec<f64>>())
+            .collect()
+    }
+
+    fn apart(a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    fn with_threshold(threshold: f64, shape: &SystemShape) -> Pseudoinverse {
+        let mut law = Pseudoinverse::new().with_threshold(threshold);
+        law.prepare(shape);
+        law
+    }
+
+    proptest! {
+        #[test]
+        fn the_answer_meets_all_tasks_and_has_the_least_norm(
+            entries in prop::collection::vec(-1.0..1.0_f64, 12 * 15), v in prop::collection::vec(-1.0..1.0_f64, 12),
+            w in prop::collection::vec(-1.0..1.0_f64, 12), other in prop::collection::vec(-1.0..1.0_f64, 15),
+        ) {
+            let (shape, tasks) = stacked(&entries, 2, [&v, &w]);
+            let (mut law, q) = (with_threshold(1e-3, &shape), [0.0; 15]);
+            let ([f, g], resolution) = resolve(&mut law, &q, &tasks);
+            prop_assume!(resolution.smallest_singular_value > 0.02);
+            prop_assert!(apart(&image_of_all(&tasks, &f), &v) < 1e-10 && apart(&image_of_all(&tasks, &g), &w) < 1e-10);
+            // The part of any motion that no task sees is at right angles to the answer.
+            let moved = image_of_all(&tasks, &other);
+            let ([seen, _], _) = resolve(&mut law, &q, &stacked(&entries, 2, [&moved, &v]).1);
+            let dot: f64 = f.iter().zip(other.iter().zip(&seen)).map(|(f, (o, s))| f * (o - s)).sum();
+            prop_assert!(dot.abs() < 1e-9, "{dot}");
+            // Rotations of the rows give the same answer.
+            let mut forced = with_threshold(resolution.smallest_singular_value, &shape);
+            let ([slow, back], exact) = resolve(&mut forced, &q, &tasks);
+            prop_assert!(!exact.damped && apart(&slow, &f) < 1e-9 && apart(&back, &g) < 1e-9);
+            let (bound, exact) = (resolution.smallest_singular_value, exact.smallest_singular_value);
+            prop_assert!(bound <= exact * (1.0 + 1e-6) && exact <= bound * 12.0_f64.sqrt() * (1.0 + 1e-6));
+        }
+
+        #[test]
+        fn tasks_that_share_nothing_are_resolved_as_if_alone(
+            entries in prop::collection::vec(-1.0..1.0_f64, 12 * 13), v in prop::collection::vec(-1.0..1.0_f64, 12),
+        ) {
+            let (shape, tasks) = stacked(&entries, 0, [&v, &v]);
+            let ([f, g], resolution) = resolve(&mut with_threshold(1e-3, &shape), &[0.0; 13], &tasks);
+            prop_assume!(resolution.smallest_singular_value > 0.02);
+            let mut alone = Vec::new();
+            for (which, joints) in [(0, 0..6), (1, 6..13)] {
+                let own = |i: usize| Vector6::from_column_slice(&entries[12 * i + 6 * which..][..6]);
+                let (columns, velocity): (Vec<_>, _) = (joints.map(own).collect(), &v[6 * which..]);
+                let mut law = prepared(Pseudoinverse::new().with_threshold(1e-3), 6, columns.len());
+                let demand = [task(6, &columns, velocity, velocity)];
+                alone.extend(resolve(&mut law, &vec![0.0; columns.len()], &demand).0[0].clone());
+            }
+            prop_assert!(apart(&f, &alone) < 1e-10 && f == g);
+        }
+    }
+
+    #[test]
+    fn tasks_that_contradict_each_other_are_damped_and_bounded() {
+        // Two tasks of one row, and joints that move them as these columns say.
+        let asked = |columns: &[[f64; 2]], v: [f64; 2], w: [f64; 2]| {
+            let mut shape = SystemShape::of_one_task(1, columns.len(), 1.0);
+            shape.tasks.push(shape.tasks[0].clone());
+            let row = |which: usize| {
+                let columns: Vec<_> =
+                    columns.iter().map(|c| Vector6::new(c[which], 0.0, 0.0, 0.0, 0.0, 0.0)).collect();
+                task(1, &columns, &[v[which]], &[w[which]])
+            };
+            resolve(&mut with_threshold(0.1, &shape), &vec![0.0; columns.len()], &[row(0), row(1)])
+        };
+        let ([f, g], resolution) = asked(&[[1.0, 1.0]], [1.0, -1.0], [1.0, 1.0]);
+        assert!(!resolution.damped && (resolution.smallest_singular_value - 2.0_f64.sqrt()).abs() < 1e-15);
+        assert!(f[0].abs() < 1e-15 && (g[0] - 1.0).abs() < 1e-15, "the best that one joint can do");
+        // Two joints that come ever nearer to being one.
+        for tilt in [0.0, 1e-9, 1e-3, 0.05] {
+            let ([f, g], resolution) = asked(&[[1.0, 1.0], [1.0, 1.0 + tilt]], [0.0, 1.0], [1.0, 0.0]);
+            assert!(resolution.damped && f.iter().chain(&g).all(|x| x.abs() <= 1.0 / 0.1), "{f:?} {g:?}");
+        }
+    }
+
+    #[test]
+    fn tasks_of_different_priorities_are_refused() {
+        let mut shape = SystemShape::of_one_task(2, 4, 1.0);
+        shape.tasks.push(TaskShape { name: "second".to_owned(), priority: 1, ..shape.tasks[0].clone() });
+        let objection = Pseudoinverse::new().objection(&shape).unwrap();
+        assert!(objection.contains("`second` has priority 1"), "{objection}");
+        assert_eq!(Pseudoinverse::new().objection(&SystemShape::of_one_task(2, 4, 1.0)), None);
     }
 }

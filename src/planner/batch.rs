@@ -1,6 +1,7 @@
-use super::bundle::are_alike;
-use super::fleet::Fleet;
-use super::{ArmState, Plan, Planner, Stop};
+use super::lanes::are_alike;
+use super::planner::Planner;
+use super::run::{Ensemble, Plan, Stop};
+use super::system::ArmState;
 
 /// As many plans advance together: the lanes of today's widest common registers.
 const TOGETHER: usize = 4;
@@ -33,8 +34,8 @@ const TOGETHER: usize = 4;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Batch {
-    fleets: Vec<Fleet>,
-    /// The fleet of each plan, and its index there.
+    ensembles: Vec<Ensemble>,
+    /// The ensemble of each plan, and its index there.
     places: Vec<(usize, usize)>,
 }
 
@@ -47,28 +48,28 @@ impl std::fmt::Debug for Batch {
 impl Batch {
     /// Takes plans as they stand.
     pub fn new(planners: impl IntoIterator<Item = Planner>) -> Self {
-        let mut rest: Vec<Option<Fleet>> =
-            planners.into_iter().map(|planner| Some(planner.into_fleet())).collect();
-        let (mut fleets, mut places) = (Vec::new(), vec![(0, 0); rest.len()]);
+        let mut rest: Vec<Option<Ensemble>> =
+            planners.into_iter().map(|planner| Some(planner.into_ensemble())).collect();
+        let (mut ensembles, mut places) = (Vec::new(), vec![(0, 0); rest.len()]);
         for first in 0..rest.len() {
-            let Some(fleet) = rest[first].take() else { continue };
-            let mut alike = vec![fleet];
-            places[first] = (fleets.len(), 0);
+            let Some(ensemble) = rest[first].take() else { continue };
+            let mut alike = vec![ensemble];
+            places[first] = (ensembles.len(), 0);
             for (place, other) in places.iter_mut().zip(&mut rest).skip(first + 1) {
                 if alike.len() == TOGETHER {
                     break;
                 }
                 if let Some(other) = other.take_if(|other| is_alike(&alike[0], other)) {
-                    *place = (fleets.len(), alike.len());
+                    *place = (ensembles.len(), alike.len());
                     alike.push(other);
                 }
             }
             match alike.pop() {
-                Some(single) if alike.is_empty() => fleets.push(single),
-                last => fleets.extend(Fleet::join(alike.into_iter().chain(last).collect())),
+                Some(single) if alike.is_empty() => ensembles.push(single),
+                last => ensembles.extend(Ensemble::join(alike.into_iter().chain(last).collect())),
             }
         }
-        Self { fleets, places }
+        Self { ensembles, places }
     }
 
     /// How many plans there are.
@@ -81,33 +82,33 @@ impl Batch {
     /// A run that stops does so at a sample that lies beyond its bounds: look at [`is_plan_finished`](Self::is_plan_finished)
     /// before sending positions on.
     pub fn step(&mut self) {
-        self.fleets.iter_mut().for_each(Fleet::step);
+        self.ensembles.iter_mut().for_each(Ensemble::step);
     }
 
     /// Whether all plans have reached their last samples or have stopped.
     pub fn is_finished(&self) -> bool {
-        self.fleets.iter().all(Fleet::are_all_finished)
+        self.ensembles.iter().all(Ensemble::are_all_finished)
     }
 
-    /// Whether that plan (in the order in which they were given) has.
+    /// Whether that plan (in the order in which they were given) has reached its last sample or has stopped.
     ///
     /// # Panics
     /// If there is no such plan; so do the others that ask for one.
     pub fn is_plan_finished(&self, plan: usize) -> bool {
-        let (fleet, course) = self.places[plan];
-        self.fleets[fleet].is_finished(course)
+        let (ensemble, run) = self.places[plan];
+        self.ensembles[ensemble].is_finished(run)
     }
 
     /// Why that plan stopped early, if it did.
     pub fn stop(&self, plan: usize) -> Option<&Stop> {
-        let (fleet, course) = self.places[plan];
-        self.fleets[fleet].courses[course].stop.as_ref()
+        let (ensemble, run) = self.places[plan];
+        self.ensembles[ensemble].runs[run].stop.as_ref()
     }
 
     /// The index of that plan's present sample.
     pub fn index(&self, plan: usize) -> usize {
-        let (fleet, course) = self.places[plan];
-        self.fleets[fleet].index(course)
+        let (ensemble, run) = self.places[plan];
+        self.ensembles[ensemble].index(run)
     }
 
     /// Arm `i` of that plan (in the order in which arms were added) at the present sample.
@@ -115,28 +116,34 @@ impl Batch {
     /// # Panics
     /// If there is no such arm.
     pub fn arm(&self, plan: usize, i: usize) -> ArmState<'_> {
-        let (fleet, course) = self.places[plan];
-        let fleet = &self.fleets[fleet];
-        let arms = fleet.courses[course].arms.clone();
+        let (ensemble, run) = self.places[plan];
+        let ensemble = &self.ensembles[ensemble];
+        let arms = ensemble.runs[run].arms.clone();
         assert!(i < arms.len(), "plan {plan} has {} arms", arms.len());
-        fleet.field.arm(arms.start + i)
+        ensemble.field.arm(arms.start + i)
     }
 
     /// Runs all plans to their ends and returns the trajectories, in the order of the plans.
     pub fn run(self) -> Vec<Plan> {
         let mut plans: Vec<Vec<Option<Plan>>> = Vec::new();
-        for fleet in self.fleets {
-            plans.push(fleet.run_with(|_, _| {}).into_iter().map(Some).collect());
+        for ensemble in self.ensembles {
+            plans.push(ensemble.run_with(|_, _| {}).into_iter().map(Some).collect());
         }
-        self.places.iter().filter_map(|&(fleet, course)| plans[fleet][course].take()).collect()
+        self.places.iter().filter_map(|&(ensemble, run)| plans[ensemble][run].take()).collect()
     }
 }
 
-fn is_alike(one: &Fleet, other: &Fleet) -> bool {
-    let arms = || one.field.arms.iter().zip(&other.field.arms);
-    one.field.arms.len() == other.field.arms.len()
+fn is_alike(one: &Ensemble, other: &Ensemble) -> bool {
+    let (one_field, other_field) = (&one.field, &other.field);
+    let alike = |i: usize| {
+        are_alike(&[
+            (&one_field.arms[i], &one_field.systems[i]),
+            (&other_field.arms[i], &other_field.systems[i]),
+        ])
+    };
+    one_field.arms.len() == other_field.arms.len()
         && one.is_in_step_with(other)
-        && arms().all(|(one, other)| are_alike(&[&one.arm, &other.arm]))
+        && (0..one_field.arms.len()).all(alike)
 }
 
 /// Runs plans to their ends, those alike together; see [`Batch`].

@@ -1,77 +1,19 @@
-use super::bundle::Sample;
-use super::field::{Owner, SynchronousField};
-use super::fleet::Description;
-use super::shared::{self, SharedArms};
-use super::{Arm, Noise, Planner, PlannerError};
-use crate::formula::{Formula, FormulaTable};
+use super::PlannerError;
+use super::feedback::{Feedback, feedback_step};
+use super::grid::grid;
+use super::planner::Planner;
+use super::resolve::resolved;
+use super::run::{Description, Evaluated, Noise, SynchronousField};
+use super::start::Start;
+use super::system::{Arm, JointIndex, JointSystem, System};
+use crate::formula::Formula;
 use crate::integrate::{IntegrateError, Multistep, Starter};
+use crate::law::LinearityKind;
 use num_traits::ToPrimitive;
 use std::collections::HashSet;
 
-/// Samples may take this much memory \[GiB\] before a plan is refused.
-const MEMORY_CAP: f64 = 4.0;
 /// A path laid by its centre has to begin this near the tip [m or rad].
 const PATH_START_TOLERANCE: f64 = 1e-6;
-
-/// How strongly the task error is fed back.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Feedback {
-    /// The step `h = sigma k sum(gamma)`, held fixed whatever `sigma`: errors fall as `sigma^(p+1)`.
-    Step(f64),
-    /// The continuous gain `k` [1/s]: `h` shrinks with `sigma`, and errors fall as `sigma^p` only.
-    Gain(f64),
-}
-
-/// How the run begins; see [`Starter`].
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Start {
-    /// The cheapest start of sufficient order: `rk4` up to order 4, `rk8` above.
-    #[default]
-    Sufficient,
-    /// Euler steps with the same `h`.
-    Paper,
-    /// Lower rows of the formula's family.
-    Ramp,
-    /// Runge-Kutta of order 4.
-    Rk4,
-    /// Runge-Kutta of order 8.
-    Rk8,
-    /// The joint positions `x_1 .. x_{s-1}` of all arms one after the other, oldest state first. Arms that share joints
-    /// stand at the place of the first of them: its joints, then those of the next that are not there yet.
-    Given(Vec<Vec<f64>>),
-}
-
-impl Start {
-    /// The names a scenario may use.
-    pub const NAMES: [&'static str; 4] = ["paper", "ramp", "rk4", "rk8"];
-
-    /// The start of that name.
-    pub fn by_name(name: &str) -> Option<Self> {
-        match name {
-            "paper" => Some(Self::Paper),
-            "ramp" => Some(Self::Ramp),
-            "rk4" => Some(Self::Rk4),
-            "rk8" => Some(Self::Rk8),
-            _ => None,
-        }
-    }
-
-    fn starter(&self, formula: &Formula) -> Starter<f64> {
-        match self {
-            Self::Sufficient => Starter::sufficient_for(formula.order()),
-            Self::Paper => Starter::Paper,
-            Self::Ramp => {
-                let table = FormulaTable::builtin();
-                Starter::Ramp(
-                    (1..formula.steps()).map_while(|known| table.ramp(formula, known).cloned()).collect(),
-                )
-            }
-            Self::Rk4 => Starter::Rk4,
-            Self::Rk8 => Starter::Rk8,
-            Self::Given(states) => Starter::Given(states.clone()),
-        }
-    }
-}
 
 /// Collects what a plan is made of; [`build`](Self::build) checks it.
 #[derive(Debug, Default)]
@@ -82,6 +24,7 @@ pub struct PlannerBuilder {
     feedback: Option<Feedback>,
     start: Start,
     arms: Vec<Arm>,
+    systems: Vec<JointSystem>,
     allow_unstable: bool,
     noise: Noise,
 }
@@ -155,10 +98,17 @@ impl PlannerBuilder {
         self
     }
 
-    /// The noise that the loop suffers; without this call there is none.
+    /// The noise that is injected into the loop; without this call there is none.
     #[must_use]
     pub fn noise(mut self, noise: Noise) -> Self {
         self.noise = noise;
+        self
+    }
+
+    /// Has arms resolved as one system, with tasks over several of their tips or a law that sees all their joints.
+    #[must_use]
+    pub fn system(mut self, system: JointSystem) -> Self {
+        self.systems.push(system);
         self
     }
 
@@ -168,125 +118,67 @@ impl PlannerBuilder {
     /// Anything that keeps the plan from being run as it was meant; see [`PlannerError`].
     pub fn build(self) -> Result<Planner, PlannerError> {
         let formula = self.formula.as_ref().ok_or(PlannerError::NoFormula)?;
-        self.check_arms()?;
+        check_arms(&self.arms)?;
         self.noise.check()?;
         let mut warnings = Vec::new();
-        let (sigma, steps) = self.grid(&mut warnings)?;
-        let gamma_sum = formula.gamma_sum().to_f64().unwrap_or(f64::NAN);
-        let h = self.feedback_step(formula, sigma, gamma_sum, &mut warnings)?;
+        let (sigma, steps) = grid(self.sigma, self.duration, &self.arms, &mut warnings)?;
         let starter = self.start.starter(formula);
-        warn_about_start(formula, &starter, steps, &mut warnings);
-        warnings.extend(self.arms.iter().filter_map(too_few_joints));
-
-        let gain = h / (sigma * gamma_sum);
         let noise = Some(self.noise).filter(|noise| !noise.is_silent());
+        let warnings_of_arms: Vec<String> = self.arms.iter().filter_map(too_few_joints).collect();
+
+        let (arms, systems) = resolved(self.arms, self.systems, sigma)?;
+        let kinds: Vec<LinearityKind> = systems.iter().map(|system| system.law().kind()).collect();
+        let asked = (sigma, self.allow_unstable);
+        let feedback = feedback_step(formula, self.feedback, &kinds, asked, &mut warnings)?;
+        warn_about_start(formula, &starter, steps, &mut warnings);
+        warnings.extend(warnings_of_arms);
+        let largest_criterion_rate = check_criteria(formula, &systems, sigma)?;
+        warnings.extend(systems.iter().filter_map(too_few_in_system));
         let mut field = match noise {
-            None => SynchronousField::new(self.arms, gain, sigma),
-            Some(_) => SynchronousField::one_by_one(self.arms, gain, sigma),
+            None => {
+                let moving: Vec<usize> = (0..systems.len()).collect();
+                SynchronousField::new(arms, systems, &moving, feedback.gain)
+            }
+            Some(_) => SynchronousField::one_by_one(arms, systems, feedback.gain),
         };
-        check_criteria(formula, &field, sigma)?;
-        warnings.extend(field.shared.iter().filter_map(|shared| too_few_shared(shared, &field)));
         let starter = laid_out(starter, &field)?;
-        let initial = field.state(|(arm, joint)| field.arms[arm].arm.q0[joint]);
+        let initial = field.state(|JointIndex { arm, joint }| field.arms[arm].arm.q0[joint]);
         let mut stepper = Multistep::new(formula, &starter, &field, 0.0, sigma, &initial)?;
-        stepper.evaluate(&mut field);
-        let (state, velocities) = (stepper.state(), stepper.derivative());
-        field.tell(&Sample { positions: state, previous: state, velocities });
+        Evaluated::at_sample(&mut stepper, &mut field).scatter_to_arms();
         check_path_starts(&field)?;
         let description = Description {
             formula: formula.id().to_owned(),
             sigma,
-            h,
-            is_stable: formula.feedback_range().contains(h),
+            h: feedback.h,
+            is_stable: feedback.is_stable,
             start: starter.name(),
             steps,
+            largest_criterion_rate,
             warnings,
         };
         Ok(Planner::begin(description, stepper, field, noise))
     }
+}
 
-    fn check_arms(&self) -> Result<(), PlannerError> {
-        if self.arms.is_empty() {
-            return Err(PlannerError::NoArms);
-        }
-        let mut names = HashSet::new();
-        for arm in &self.arms {
-            if !names.insert(arm.name.as_str()) {
-                return Err(PlannerError::DuplicateArm { name: arm.name.clone() });
-            }
-            check_initial(arm)?;
-        }
-        shared::sets(&self.arms).iter().try_for_each(|set| shared::check(&self.arms, set))
+impl Planner {
+    /// An empty builder.
+    pub fn builder() -> PlannerBuilder {
+        PlannerBuilder::default()
     }
+}
 
-    /// The gap and the number of steps: `sigma` as asked where it divides the duration, else `T / N` just below it.
-    fn grid(&self, warnings: &mut Vec<String>) -> Result<(f64, usize), PlannerError> {
-        let (sigma, duration) = (self.sigma, self.duration);
-        if !(duration > 0.0 && duration.is_finite()) {
-            return Err(PlannerError::Duration { value: duration });
-        }
-        if !(sigma > 0.0 && sigma <= duration) {
-            return Err(PlannerError::Sigma { value: sigma, duration });
-        }
-        let exact = duration / sigma;
-        let whole = exact.round();
-        let divides = (exact - whole).abs() <= 1e-9 * whole;
-        let steps = if divides { whole } else { exact.ceil() };
-        self.check_memory(steps)?;
-        if divides {
-            return Ok((sigma, steps as usize));
-        }
-        let adjusted = duration / steps;
-        warnings.push(format!(
-            "sigma = {sigma} s does not divide the duration {duration} s; it was adjusted to {duration}/{steps} = {adjusted} s"
-        ));
-        Ok((adjusted, steps as usize))
+fn check_arms(arms: &[Arm]) -> Result<(), PlannerError> {
+    if arms.is_empty() {
+        return Err(PlannerError::NoArms);
     }
-
-    fn check_memory(&self, steps: f64) -> Result<(), PlannerError> {
-        let joints: usize = self.arms.iter().map(|arm| arm.q0.len()).sum();
-        let bytes_per_sample = 8.0 * (2 * joints + 6 * self.arms.len()) as f64;
-        let gibibytes = steps * bytes_per_sample / f64::from(1 << 30);
-        if gibibytes <= MEMORY_CAP {
-            return Ok(());
+    let mut names = HashSet::new();
+    for arm in arms {
+        if !names.insert(arm.name.as_str()) {
+            return Err(PlannerError::DuplicateArm { name: arm.name.clone() });
         }
-        // A pose step of a 7-joint arm takes well under a microsecond on current machines.
-        let seconds = steps * 1e-6 * self.arms.len() as f64;
-        Err(PlannerError::TooManySteps { sigma: self.sigma, steps, gibibytes, seconds })
+        check_initial(arm)?;
     }
-
-    fn feedback_step(
-        &self,
-        formula: &Formula,
-        sigma: f64,
-        gamma_sum: f64,
-        warnings: &mut Vec<String>,
-    ) -> Result<f64, PlannerError> {
-        let h = match self.feedback {
-            Some(Feedback::Step(h)) => h,
-            Some(Feedback::Gain(gain)) => {
-                check_feedback("gain", gain)?;
-                sigma * gain * gamma_sum
-            }
-            None => formula.optimum().map_or(0.0, |optimum| optimum.h),
-        };
-        check_feedback("step h", h)?;
-        if h == 0.0 {
-            warnings.push("h = 0: without feedback the task error is never corrected and drifts".to_owned());
-            return Ok(h);
-        }
-        let range = formula.feedback_range();
-        if range.contains(h) {
-            return Ok(h);
-        }
-        let (id, range) = (formula.id().to_owned(), range.to_string());
-        if !self.allow_unstable {
-            return Err(PlannerError::StepSizeOutsideRange { h, formula: id, range });
-        }
-        warnings
-            .push(format!("h = {h} lies outside the feedback range {range} of formula `{id}`, as allowed"));
-        Ok(h)
-    }
+    Ok(())
 }
 
 /// A start with given states, in the order of the field's components.
@@ -298,36 +190,18 @@ fn laid_out(starter: Starter<f64>, field: &SynchronousField) -> Result<Starter<f
             let (what, expected) = (format!("starting state {}", k + 1), joints.len());
             return Err(IntegrateError::Dimension { what, got: state.len(), expected });
         }
-        let place = |owner: Owner| joints.iter().position(|joint| joint.contains(&owner));
-        Ok(field.state(|owner| place(owner).map_or(0.0, |place| state[place])))
+        let place = |index: JointIndex| joints.iter().position(|joint| joint.contains(&index));
+        Ok(field.state(|index| place(index).map_or(0.0, |place| state[place])))
     };
     Ok(Starter::Given(states.into_iter().enumerate().map(lay_out).collect::<Result<_, _>>()?))
 }
 
 /// The joints of all arms one after the other, each with all that it is called: one that is shared belongs to several arms.
-fn joints_in_order(field: &SynchronousField) -> Vec<Vec<Owner>> {
-    let mut in_order: Vec<Vec<Owner>> = Vec::new();
-    let mut listed = vec![false; field.arms.len()];
-    for arm in 0..field.arms.len() {
-        if std::mem::replace(&mut listed[arm], true) {
-            continue;
-        }
-        match field.shared.iter().find(|shared| shared.arms().any(|member| member == arm)) {
-            None => in_order.extend((0..field.arms[arm].positions.len()).map(|joint| vec![(arm, joint)])),
-            Some(shared) => {
-                in_order.extend(shared.owners());
-                shared.arms().for_each(|arm| listed[arm] = true);
-            }
-        }
-    }
-    in_order
-}
-
-fn check_feedback(what: &'static str, value: f64) -> Result<(), PlannerError> {
-    if value >= 0.0 && value.is_finite() {
-        return Ok(());
-    }
-    Err(PlannerError::Feedback { what, value })
+/// Arms of one system stand at the place of the first of them.
+fn joints_in_order(field: &SynchronousField) -> Vec<Vec<JointIndex>> {
+    let mut systems: Vec<&System> = field.systems.iter().collect();
+    systems.sort_by_key(|system| system.arms().min());
+    systems.into_iter().flat_map(System::joints).collect()
 }
 
 fn check_initial(arm: &Arm) -> Result<(), PlannerError> {
@@ -367,32 +241,29 @@ fn too_few_joints(arm: &Arm) -> Option<String> {
     })
 }
 
-fn too_few_shared(shared: &SharedArms, field: &SynchronousField) -> Option<String> {
-    let (joints, rows) = shared.size();
-    (joints < rows).then(|| {
-        let arms = shared.report(&field.arms).arms.join("`, `");
+fn too_few_in_system(system: &System) -> Option<String> {
+    let (joints, rows) = (system.shape().joints.len(), system.shape().rows());
+    (joints < rows && system.arms().count() > 1).then(|| {
+        let arms = system.arm_names().join("`, `");
         format!("the arms `{arms}` together have {joints} joints for the {rows} components of their tasks: most paths are out of their reach")
     })
 }
 
-/// A criterion is integrated by `(alpha, beta)`: `sigma * rate * beta(1)` has to lie in that pair's own range.
-fn check_criteria(formula: &Formula, field: &SynchronousField, sigma: f64) -> Result<(), PlannerError> {
-    for runtime in &field.arms {
-        let Some(rate) = runtime.arm.law.criterion_rate() else { continue };
-        let pair = formula.without_split();
-        let beta_sum = pair.gamma_sum().to_f64().unwrap_or(f64::NAN);
-        let range = pair.feedback_range();
+/// A criterion is integrated by `(alpha, beta)`: `sigma * rate * beta(1)` has to lie in that pair's own range. Returns the
+/// largest rate [1/s] that does.
+fn check_criteria(formula: &Formula, systems: &[System], sigma: f64) -> Result<f64, PlannerError> {
+    let pair = formula.without_split();
+    let beta_sum = pair.gamma_sum().to_f64().unwrap_or(f64::NAN);
+    let range = pair.feedback_range();
+    let limit = range.map_or(0.0, |range| range.value() / (sigma * beta_sum));
+    for system in systems {
+        let Some(rate) = system.law().criterion_rate() else { continue };
         if !range.is_some_and(|range| range.contains(sigma * rate * beta_sum)) {
-            return Err(PlannerError::CriterionTooFast {
-                arm: runtime.arm.name.clone(),
-                rate,
-                sigma,
-                formula: formula.id().to_owned(),
-                limit: range.map_or(0.0, |range| range.value() / (sigma * beta_sum)),
-            });
+            let (arm, formula) = (system.arm_names().join("`, `"), formula.id().to_owned());
+            return Err(PlannerError::CriterionTooFast { arm, rate, sigma, formula, limit });
         }
     }
-    Ok(())
+    Ok(limit)
 }
 
 fn check_path_starts(field: &SynchronousField) -> Result<(), PlannerError> {
@@ -400,6 +271,14 @@ fn check_path_starts(field: &SynchronousField) -> Result<(), PlannerError> {
         let distance = runtime.error.norm();
         if distance > PATH_START_TOLERANCE {
             return Err(PlannerError::PathStart { arm: runtime.arm.name.clone(), distance });
+        }
+    }
+    for system in &field.systems {
+        for ((state, rows), _) in system.added_tasks() {
+            let distance = rows.error_by_component(&*state.task).norm();
+            if distance > PATH_START_TOLERANCE {
+                return Err(PlannerError::TaskStart { task: state.task.name().to_owned(), distance });
+            }
         }
     }
     Ok(())

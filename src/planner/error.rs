@@ -134,6 +134,40 @@ pub enum PlannerError {
         /// The arm.
         arm: String,
     },
+    /// A system names an arm that there is not.
+    #[error("there is no arm `{name}`; the arms are `{known}`")]
+    UnknownArm {
+        /// The name.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
+    /// Arms that are resolved as one system were given two laws.
+    #[error(
+        "the arms `{arms}` are resolved as one system and were given two laws for it; leave one of them out"
+    )]
+    TwoLaws {
+        /// The arms.
+        arms: String,
+    },
+    /// A law can not resolve the system that it was given.
+    #[error("the law of `{arms}`: this law {objection}")]
+    LawDoesNotFit {
+        /// The arms of the system.
+        arms: String,
+        /// What the law says of it.
+        objection: String,
+    },
+    /// A task over several tips does not begin where they are.
+    #[error(
+        "task `{task}` has an error of {distance:.6} m (or rad) at q0; change q0, or have the task begin there"
+    )]
+    TaskStart {
+        /// The task.
+        task: String,
+        /// Norm of its error at the start [m or rad].
+        distance: f64,
+    },
     /// The chain has no movable joint.
     #[error("arm `{arm}`: nothing moves between `{base}` and `{tip}`")]
     NoJoints {

@@ -1,28 +1,29 @@
 //! Brings formula, robots, tasks and laws together: [`Planner`] steps N arms in synchrony, [`Plan`] is what came of it.
+//!
+//! Three folders below it, each of which sees those before it: `system` (arms, which joints are resolved together, limits),
+//! `lanes` (the fast path for plain arms that are alike: nothing else needs to know it) and `run` (runs that advance
+//! together, and what stops them).
 
-mod arm;
 mod batch;
-mod board;
 mod builder;
-mod bundle;
-mod diagnosis;
 mod error;
-mod field;
-mod fleet;
-mod glance;
-mod lost;
-mod monitor;
-mod noise;
-mod plan;
+mod feedback;
+mod grid;
+mod lanes;
+#[expect(clippy::module_inception, reason = "the file is named after the type that it holds")]
+mod planner;
+mod resolve;
 mod run;
-mod runtime;
-mod shared;
+mod start;
+mod system;
 
-pub use arm::Arm;
+pub use crate::law::LimitKind;
 pub use batch::{Batch, run_together};
-pub use builder::{Feedback, PlannerBuilder, Start};
+pub use builder::PlannerBuilder;
 pub use error::PlannerError;
-pub use monitor::{LimitKind, Violation};
-pub use noise::Noise;
-pub use plan::{ArmPlan, Plan, PlanStatus, SharedJoints};
-pub use run::{ArmState, Planner, Stop};
+pub use feedback::Feedback;
+pub use grid::{MAX_SAMPLE_BYTES, sample_bytes};
+pub use planner::Planner;
+pub use run::{ArmPlan, Noise, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
+pub use start::Start;
+pub use system::{Arm, ArmState, DerivativeErrors, JointSystem, Violation, derivative_errors};

@@ -1,4 +1,5 @@
-use super::{Noise, Violation};
+use super::noise::Noise;
+use crate::planner::system::Violation;
 use nalgebra::Vector6;
 
 /// How a run ended.
@@ -30,6 +31,44 @@ impl PlanStatus {
             Self::NonFinite => "non_finite",
         }
     }
+}
+
+/// Why and where a run stopped early.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stop {
+    /// The kind of stop.
+    pub status: PlanStatus,
+    /// The reason as a sentence.
+    pub reason: String,
+}
+
+/// What became of a task beside those of the arms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TaskPlan {
+    /// The task's name.
+    pub name: String,
+    /// The arms whose tips it is about.
+    pub arms: Vec<String>,
+    /// How many rows it has.
+    pub rows: usize,
+    /// The error of every row [m or rad], sample after sample.
+    pub errors: Vec<f64>,
+}
+
+impl TaskPlan {
+    /// The errors of all rows [m or rad] at sample `n`.
+    pub fn error(&self, n: usize) -> &[f64] {
+        &self.errors[n * self.rows..(n + 1) * self.rows]
+    }
+
+    /// The largest norm of the error over the run.
+    pub fn max_error(&self) -> f64 {
+        self.errors.chunks_exact(self.rows).map(norm).fold(0.0, f64::max)
+    }
+}
+
+fn norm(error: &[f64]) -> f64 {
+    error.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }
 
 /// What one arm did.
@@ -107,10 +146,12 @@ pub struct Plan {
     pub start: &'static str,
     /// Steps of the whole plan; a run that stopped has fewer.
     pub steps: usize,
-    /// The noise that the loop suffered, if there was any.
+    /// The noise that was injected into the loop, if there was any.
     pub noise: Option<Noise>,
     /// What each arm did.
     pub arms: Vec<ArmPlan>,
+    /// What became of the tasks beside those of the arms.
+    pub tasks: Vec<TaskPlan>,
     /// Which arms shared joints, and were resolved as one system.
     pub shared: Vec<SharedJoints>,
     /// What the user should know.

@@ -1,9 +1,10 @@
 //! White noise in what a loop measures and in what it is told.
 
-use super::PlannerError;
 use super::field::SynchronousField;
 use crate::integrate::Multistep;
 use crate::math::{mix, normal};
+use crate::planner::PlannerError;
+use crate::planner::system::Disturbance;
 use nalgebra::Vector6;
 
 /// White noise, normally distributed, drawn anew at every sample from the second on. Every number is the standard deviation
@@ -45,59 +46,54 @@ impl Noise {
     }
 
     /// Refuses what is no standard deviation.
-    pub(super) fn check(&self) -> Result<(), PlannerError> {
+    pub(in crate::planner) fn check(&self) -> Result<(), PlannerError> {
         let is_wrong = |value: f64| !(value >= 0.0 && value.is_finite());
         let mut wrong = self.deviations().into_iter().filter(|deviation| is_wrong(deviation.3));
         wrong.next().map_or(Ok(()), |(what, _, _, value)| Err(PlannerError::Noise { what, value }))
     }
 }
 
-/// What the loop of one arm sees in place of the truth, at one sample.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Disturbance {
-    /// To be added to the task error.
-    pub(super) error: Vector6<f64>,
-    /// To be added to the twist of the reference.
-    pub(super) twist: Vector6<f64>,
-}
-
 /// The noise of a run, and what the robot was sent.
 #[derive(Debug)]
-pub(super) struct NoisyLoop {
+pub(in crate::planner) struct NoisyLoop {
     noise: Noise,
     commanded: Vec<f64>,
 }
 
 impl NoisyLoop {
-    pub(super) fn new(noise: Noise, initial: Vec<f64>) -> Self {
+    pub(in crate::planner) fn new(noise: Noise, initial: Vec<f64>) -> Self {
         Self { noise, commanded: initial }
     }
 
-    pub(super) fn noise(&self) -> &Noise {
+    pub(in crate::planner) fn noise(&self) -> &Noise {
         &self.noise
     }
 
     /// Evaluates the present sample as it is measured; the task errors found are the true ones.
-    pub(super) fn evaluate(&mut self, stepper: &mut Multistep<f64>, field: &mut SynchronousField) {
+    pub(in crate::planner) fn evaluate(
+        &mut self,
+        stepper: &mut Multistep<f64>,
+        field: &mut SynchronousField,
+    ) {
         let draws = Draws::of(&self.noise, stepper.index());
         for (arm, runtime) in field.arms.iter_mut().enumerate() {
             runtime.disturbance = Some(draws.disturbance(arm));
         }
         self.commanded.copy_from_slice(stepper.state());
         if self.noise.joints == 0.0 {
-            stepper.evaluate(field);
+            field.evaluate_sample(stepper);
             return;
         }
-        let joints = stepper.state_mut().iter_mut().zip(field.owners()).filter(|(_, owner)| owner.is_some());
+        let joints = stepper.state_mut().iter_mut().zip(field.joints()).filter(|(_, joint)| joint.is_some());
         for (joint, (position, _)) in joints.enumerate() {
             *position += draws.joint(joint);
         }
-        stepper.evaluate(field);
+        field.evaluate_sample(stepper);
         self.look(stepper, field);
     }
 
     /// Brings the arms, evaluated as they are measured, to where they were sent.
-    pub(super) fn look(&self, stepper: &Multistep<f64>, field: &mut SynchronousField) {
+    pub(in crate::planner) fn look(&self, stepper: &Multistep<f64>, field: &mut SynchronousField) {
         field.look(stepper.time(), &self.commanded);
     }
 }

@@ -1,26 +1,10 @@
-use super::lost::Deviation;
-use crate::law::Resolution;
-use crate::robot::{Chain, Limits};
+use super::bounds::Deviation;
+use super::limits::{JointLimits, excess};
+use crate::law::{LimitKind, Resolution};
+use crate::math::{Kernel, Lane, Lanes, level, with_instructions};
+use crate::robot::Chain;
+use fearless_simd::Simd;
 use nalgebra::Vector6;
-
-/// Which limit of a joint was crossed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LimitKind {
-    /// Lower or upper position limit [rad or m].
-    Position,
-    /// Velocity limit [rad/s or m/s], of the joint velocity or of the mean velocity between two samples.
-    Velocity,
-}
-
-impl LimitKind {
-    /// The word used in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Position => "position",
-            Self::Velocity => "velocity",
-        }
-    }
-}
 
 /// The worst crossing of one limit of one joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,53 +48,54 @@ fn larger(a: f64, b: f64) -> f64 {
 
 /// What is watched on every sample of one arm: errors, limits, conditioning. Nothing here allocates after `new`.
 #[derive(Clone, Debug)]
-pub(super) struct Monitor {
+pub(in crate::planner) struct Monitor {
     position: Vec<Worst>,
     velocity: Vec<Worst>,
     /// The positions one sample ago.
-    pub(super) previous: Vec<f64>,
-    limits: Vec<Limit>,
+    pub(in crate::planner) previous: Vec<f64>,
+    limits: Vec<JointLimits<[f64; 1]>>,
     sigma: f64,
     largest: Deviation,
     largest_sum: f64,
-    pub(super) max_error_component: f64,
-    pub(super) damped_samples: usize,
-    pub(super) smallest_singular_value: f64,
-    pub(super) smallest_at: f64,
+    pub(in crate::planner) max_error_component: f64,
+    pub(in crate::planner) damped_samples: usize,
+    pub(in crate::planner) smallest_singular_value: f64,
+    pub(in crate::planner) smallest_at: f64,
+    /// The largest rate [1/s] of null-space criteria, and when.
+    pub(in crate::planner) largest_rate: (f64, f64),
 }
 
-/// The limits of a joint, in the form in which most samples are done with at a glance.
-#[derive(Clone, Debug)]
-pub(super) struct Limit {
-    pub(super) lower: f64,
-    pub(super) upper: f64,
-    pub(super) velocity: f64,
-    /// How far the joint may go in one step, less what rounding could make of it.
-    pub(super) stride: f64,
+/// How far the joints of one arm are beyond their limits at most.
+struct Excess<'a> {
+    limits: &'a [JointLimits<[f64; 1]>],
+    positions: &'a [f64],
+    previous: &'a [f64],
+    velocities: &'a [f64],
 }
 
-impl Limit {
-    fn of(limits: &Limits, sigma: f64) -> Self {
-        let Limits { lower, upper, velocity } = *limits;
-        Self { lower, upper, velocity, stride: velocity * sigma * (1.0 - 1e-12) }
-    }
+impl Kernel for Excess<'_> {
+    type Output = f64;
 
-    /// Whether it can not have been crossed.
-    fn holds(&self, q: f64, velocity: f64, previous: f64) -> bool {
-        q >= self.lower
-            && q <= self.upper
-            && velocity.abs() <= self.velocity
-            && (q - previous).abs() <= self.stride
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> f64 {
+        let lane = |entries: &[f64], joint: usize| Lane::splat(simd, entries[joint]);
+        let mut most = Lane::splat(simd, 0.0);
+        for (joint, limits) in self.limits.iter().enumerate() {
+            let [q, previous, velocity] =
+                [self.positions, self.previous, self.velocities].map(|entries| lane(entries, joint));
+            most = excess(simd, limits, [q, previous, velocity], most);
+        }
+        most.value
     }
 }
 
 impl Monitor {
-    pub(super) fn new(chain: &Chain, sigma: f64) -> Self {
+    pub(in crate::planner) fn new(chain: &Chain, sigma: f64) -> Self {
         Self {
             position: vec![Worst::NONE; chain.dof()],
             velocity: vec![Worst::NONE; chain.dof()],
             previous: vec![f64::NAN; chain.dof()],
-            limits: chain.joints().iter().map(|joint| Limit::of(&joint.limits, sigma)).collect(),
+            limits: chain.joints().iter().map(|joint| JointLimits::of(&joint.limits, sigma)).collect(),
             sigma,
             largest: Deviation { position: 0.0, orientation: 0.0 },
             largest_sum: 0.0,
@@ -118,15 +103,16 @@ impl Monitor {
             damped_samples: 0,
             smallest_singular_value: f64::INFINITY,
             smallest_at: 0.0,
+            largest_rate: (0.0, 0.0),
         }
     }
 
     /// The limits of all joints.
-    pub(super) fn limits(&self) -> &[Limit] {
+    pub(in crate::planner) fn limits(&self) -> &[JointLimits<[f64; 1]>] {
         &self.limits
     }
 
-    pub(super) fn observe_error(&mut self, error: &Vector6<f64>) {
+    pub(in crate::planner) fn observe_error(&mut self, error: &Vector6<f64>) {
         let Deviation { position, orientation } = Deviation::of(error);
         let component = error.iter().fold(0.0, |a, b| larger(a, b.abs()));
         self.observe_largest([position, orientation, position + orientation], component);
@@ -142,7 +128,12 @@ impl Monitor {
 
     /// Takes note of many samples: the largest of what [`observe_error`](Self::observe_error) looks at, and the smallest
     /// singular value with the time of its first occurrence.
-    pub(super) fn observe_extremes(&mut self, squares: [f64; 3], component: f64, smallest: (f64, f64)) {
+    pub(in crate::planner) fn observe_extremes(
+        &mut self,
+        squares: [f64; 3],
+        component: f64,
+        smallest: (f64, f64),
+    ) {
         self.observe_largest(squares, component);
         let known = (self.smallest_singular_value, self.smallest_at);
         if smallest.0 < known.0 || (smallest.0 == known.0 && smallest.1 < known.1) {
@@ -151,25 +142,23 @@ impl Monitor {
     }
 
     /// The largest norm of the task error.
-    pub(super) fn max_error(&self) -> f64 {
+    pub(in crate::planner) fn max_error(&self) -> f64 {
         self.largest_sum.sqrt()
     }
 
     /// The largest position error \[m\].
-    pub(super) fn max_position_error(&self) -> f64 {
+    pub(in crate::planner) fn max_position_error(&self) -> f64 {
         self.largest.position.sqrt()
     }
 
     /// The largest orientation error \[rad\].
-    pub(super) fn max_orientation_error(&self) -> f64 {
+    pub(in crate::planner) fn max_orientation_error(&self) -> f64 {
         self.largest.orientation.sqrt()
     }
 
-    pub(super) fn observe_joints(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
-        let joints = q.iter().zip(velocity).zip(&self.previous).zip(&self.limits);
-        let mut joints =
-            joints.map(|(((q, velocity), previous), limit)| limit.holds(*q, *velocity, *previous));
-        if !joints.all(|holds| holds) {
+    pub(in crate::planner) fn observe_joints(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
+        let (limits, previous) = (&self.limits, &self.previous);
+        if with_instructions(level(), Excess { limits, positions: q, previous, velocities: velocity }) > 0.0 {
             self.look_closely(t, q, velocity);
         }
         self.previous.copy_from_slice(q);
@@ -177,10 +166,10 @@ impl Monitor {
 
     /// Takes down the crossings of a sample that is not clearly within all limits.
     #[cold]
-    pub(super) fn look_closely(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
+    pub(in crate::planner) fn look_closely(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
         for (i, limit) in self.limits.iter().enumerate() {
-            let fastest = limit.velocity;
-            self.position[i].observe(t, q[i], limit.lower, limit.upper);
+            let ([lower], [upper], [fastest]) = (limit.lower, limit.upper, limit.velocity);
+            self.position[i].observe(t, q[i], lower, upper);
             self.velocity[i].observe(t, velocity[i], -fastest, fastest);
             // NaN before the first step compares as no violation.
             let mean = (q[i] - self.previous[i]) / self.sigma;
@@ -188,15 +177,18 @@ impl Monitor {
         }
     }
 
-    pub(super) fn observe_conditioning(&mut self, resolution: &Resolution, t: f64) {
+    pub(in crate::planner) fn observe_conditioning(&mut self, resolution: &Resolution, t: f64) {
         self.damped_samples += usize::from(resolution.damped);
         if resolution.smallest_singular_value < self.smallest_singular_value {
             self.smallest_singular_value = resolution.smallest_singular_value;
             self.smallest_at = t;
         }
+        if resolution.criterion_rate > self.largest_rate.0 {
+            self.largest_rate = (resolution.criterion_rate, t);
+        }
     }
 
-    pub(super) fn violations(&self, chain: &Chain) -> Vec<Violation> {
+    pub(in crate::planner) fn violations(&self, chain: &Chain) -> Vec<Violation> {
         let mut violations = Vec::new();
         for (i, joint) in chain.joints().iter().enumerate() {
             for (kind, worst) in

@@ -1,18 +1,19 @@
 use crate::law::{Law, Pseudoinverse};
 use crate::robot::{Chain, ChainScratch};
-use crate::task::{Motion, TaskKind};
-use nalgebra::Vector6;
+use crate::task::{Motion, Task, TaskInstant, TaskKind, TaskRows, Tip, Tracking};
+use nalgebra::{IsometryMatrix3, Vector6};
+use std::sync::Arc;
 
 /// One arm of a plan: a chain, where it stands, and what its tip shall do by which law.
 pub struct Arm {
-    pub(super) name: String,
-    pub(super) chain: Chain,
-    pub(super) q0: Vec<f64>,
-    pub(super) task: TaskKind,
-    pub(super) motion: Motion,
-    pub(super) law: Box<dyn Law>,
-    pub(super) start_distance: Option<f64>,
-    pub(super) machine: Option<String>,
+    pub(in crate::planner) name: String,
+    pub(in crate::planner) chain: Chain,
+    pub(in crate::planner) q0: Vec<f64>,
+    pub(in crate::planner) task: Arc<dyn Task>,
+    /// The least-norm law unless one was given.
+    pub(in crate::planner) law: Option<Box<dyn Law>>,
+    pub(in crate::planner) start_distance: Option<f64>,
+    pub(in crate::planner) machine: Option<String>,
 }
 
 impl std::fmt::Debug for Arm {
@@ -31,9 +32,8 @@ impl Arm {
             name: name.into(),
             chain,
             q0,
-            task,
-            motion,
-            law: Box::new(Pseudoinverse::new()),
+            task: Arc::new(Tracking { kind: task, motion }),
+            law: None,
             start_distance: None,
             machine: None,
         }
@@ -42,7 +42,14 @@ impl Arm {
     /// The same arm with another law.
     #[must_use]
     pub fn with_law(mut self, law: impl Law + 'static) -> Self {
-        self.law = Box::new(law);
+        self.law = Some(Box::new(law));
+        self
+    }
+
+    /// The same arm with another task for its tip, in place of the one that tracks a motion.
+    #[must_use]
+    pub fn with_task(mut self, task: impl Task + 'static) -> Self {
+        self.task = Arc::new(task);
         self
     }
 
@@ -83,7 +90,16 @@ impl Arm {
     /// The task error (linear \[m\]; angular \[rad\]) with the joints at `q` [rad or m] at time `t` \[s\]: zero in the
     /// components that the task does not ask for.
     pub fn task_error(&self, t: f64, q: &[f64], scratch: &mut ChainScratch) -> Vector6<f64> {
-        self.task.error(&self.chain.forward(q, scratch).pose(), &self.motion.at(t))
+        let posed = self.chain.forward(q, scratch);
+        if let Some((kind, motion)) = self.task.tracking() {
+            return kind.error(&posed.pose(), &motion.at(t));
+        }
+        let mut tip = tip_of(&self.chain, (0..self.chain.dof()).collect());
+        tip.pose = posed.pose();
+        posed.geometric_jacobian(&mut tip.jacobian);
+        let mut rows = TaskRows::zeros(self.task.rows(), self.chain.dof());
+        self.task.evaluate(&TaskInstant::new(t, q, &[tip], &[0]), &mut rows);
+        rows.error_by_component(&*self.task)
     }
 
     /// Where the joint of that name starts [rad or m], if it is one of its own.
@@ -93,7 +109,28 @@ impl Arm {
     }
 
     /// The names of the joints it moves, in the order of their positions.
-    pub(super) fn joint_names(&self) -> Vec<String> {
+    pub(in crate::planner) fn joint_names(&self) -> Vec<String> {
         self.chain.joints().iter().map(|joint| joint.name.clone()).collect()
     }
+
+    /// Takes the law that it was given, or the least-norm law.
+    pub(in crate::planner) fn take_law(&mut self) -> Box<dyn Law> {
+        self.law.take().unwrap_or_else(|| Box::new(Pseudoinverse::new()))
+    }
+
+    /// Whether its law is the least-norm law and nothing else.
+    pub(in crate::planner) fn has_plain_law(&self) -> bool {
+        self.law.as_ref().is_none_or(|law| law.fast_path().is_some())
+    }
+
+    /// The chain's reach \[m\], or a metre where that is infinite.
+    pub(in crate::planner) fn length(&self) -> f64 {
+        let reach = self.chain.reach();
+        if reach.is_finite() { reach } else { 1.0 }
+    }
+}
+
+/// A tip that a chain is to move, its joints at the places `joints` of a system.
+pub(in crate::planner) fn tip_of(chain: &Chain, joints: Vec<usize>) -> Tip {
+    Tip { pose: IsometryMatrix3::identity(), jacobian: vec![Vector6::zeros(); chain.dof()], joints }
 }

@@ -1,64 +1,22 @@
 //! Arms that move in the same way, evaluated together: one in each lane.
 
-use super::board::{Board, WriteUp};
-use super::glance::{Found, Glance, Look, OnCourse};
-use super::runtime::ArmRuntime;
-use super::{Arm, ArmState};
-use crate::law::{Resolution, least_norm};
+use super::arm_group::{ArmGroup, GroupMembers};
+use super::found::Found;
+use super::lane_monitor::{LaneCriteria, LaneMonitor, Look};
+use super::sample::Sample;
+use super::transpose::{Transpose, Transposition};
+use crate::law::{Resolution, is_regular, least_norm};
 use crate::math::{Kernel, LaneArray, Lanes, with_instructions};
+use crate::planner::system::{ArmRuntime, ArmState, Moment, System};
 use crate::robot::{SideBySide, SideBySideScratch};
-use crate::task::{Reference, TaskKind, place_of_sample, pose_error};
-use fearless_simd::{Level, Simd};
+use crate::task::{Motion, Reference, TaskKind, place_of_sample, pose_error};
+use fearless_simd::Simd;
 use std::sync::Arc;
-
-/// Arms whose states lie joint by joint, all arms of each joint side by side.
-pub(super) trait Together: Send {
-    /// How many lanes there are for each joint.
-    fn width(&self) -> usize;
-
-    /// Evaluates all arms at time `t` with the gain `gain`; returns whether all of them are clearly on their paths and far
-    /// from singularities.
-    fn evaluate(
-        &mut self,
-        level: Level,
-        at: (f64, f64),
-        arms: &mut [ArmRuntime],
-        x: &[f64],
-        out: [&mut [f64]; 2],
-    ) -> bool;
-
-    /// Takes down states, errors, limits and conditioning of a sample in which all arms are on course.
-    fn watch(&mut self, level: Level, t: f64, arms: &mut [ArmRuntime], sample: &Sample<'_>);
-
-    /// The arm of a lane at the sample that was watched or told last.
-    fn arm(&self, lane: usize) -> ArmState<'_>;
-
-    /// Tells every arm what is known of it.
-    fn tell(&mut self, level: Level, arms: &mut [ArmRuntime], sample: &Sample<'_>);
-
-    /// Tells the monitors where the arms were one sample ago.
-    fn remind(&self, arms: &mut [ArmRuntime], previous: &[f64]);
-
-    /// Gives the monitors what has been watched.
-    fn hand_over(&self, arms: &mut [ArmRuntime]);
-}
-
-/// What a stepper knows of a sample.
-#[derive(Clone, Copy)]
-pub(super) struct Sample<'a> {
-    /// Joint positions [rad or m].
-    pub(super) positions: &'a [f64],
-    /// Joint positions one sample ago, the same at the start.
-    pub(super) previous: &'a [f64],
-    /// Feedforward joint velocities [rad/s or m/s].
-    pub(super) velocities: &'a [f64],
-}
 
 /// Up to `A::WIDTH` arms with chains of one shape, tasks of one kind and the plain least-norm law. The last arm fills the
 /// lanes that are left.
-pub(super) struct Bundle<A: LaneArray> {
-    /// Their indices.
-    members: Vec<usize>,
+pub(in crate::planner) struct LaneGroup<A: LaneArray> {
+    members: Vec<LaneMember>,
     task: TaskKind,
     chains: SideBySide<A>,
     scratch: SideBySideScratch<A>,
@@ -66,12 +24,20 @@ pub(super) struct Bundle<A: LaneArray> {
     /// The references of an instant that is not recorded.
     computed: Vec<Reference>,
     found: Found<A>,
-    on_course: OnCourse<A>,
-    is_on_course: bool,
+    criteria: LaneCriteria<A>,
+    is_clear: bool,
     /// The lanes that their law damped.
     damped: Vec<bool>,
-    glance: Glance<A>,
-    board: Board<A>,
+    monitor: LaneMonitor<A>,
+    transpose: Transpose<A>,
+}
+
+/// An arm of a group.
+#[derive(Clone, Copy)]
+pub(in crate::planner) struct LaneMember {
+    /// The arm, and the system that it is.
+    pub(in crate::planner) arm: usize,
+    pub(in crate::planner) system: usize,
 }
 
 /// References that were sampled beforehand, with the same gap in all lanes.
@@ -83,7 +49,7 @@ struct Recorded {
 impl Recorded {
     /// `None` unless the motions of all arms are of that kind.
     fn new(arms: &[&ArmRuntime], width: usize) -> Option<Self> {
-        let lane = |lane: usize| arms[lane.min(arms.len() - 1)].arm.motion.samples();
+        let lane = |lane: usize| motion(arms[lane.min(arms.len() - 1)])?.samples();
         let (_, sigma) = lane(0)?;
         let of_lane =
             |i: usize| lane(i).filter(|(_, gap)| *gap == sigma).map(|(samples, _)| Arc::clone(samples));
@@ -98,33 +64,45 @@ impl Recorded {
     }
 }
 
-/// Whether arms can be lanes of one bundle of any width.
-pub(super) fn are_alike(arms: &[&Arm]) -> bool {
-    let fits = |arm: &&Arm| arm.task == arms[0].task && arm.law.least_norm_threshold().is_some();
-    let chains: Vec<_> = arms.iter().map(|arm| &arm.chain).collect();
-    arms.iter().all(fits) && SideBySide::<[f64; 4]>::new(&chains).is_some()
+/// What an arm's tip tracks, if it tracks a motion.
+fn motion(runtime: &ArmRuntime) -> Option<&Motion> {
+    runtime.arm.task.tracking().map(|(_, motion)| motion)
 }
 
-impl<A: LaneArray> Bundle<A> {
-    /// `None` unless the arms of these indices are alike enough; see [`Bundle`].
-    pub(super) fn new(arms: &[ArmRuntime], members: &[usize]) -> Option<Self> {
-        let own: Vec<_> = members.iter().map(|&member| &arms[member]).collect();
-        if !are_alike(&own.iter().map(|runtime| &runtime.arm).collect::<Vec<_>>()) {
+/// Whether arms can be lanes of one group of any width; each is given with its system.
+pub(in crate::planner) fn are_alike(arms: &[(&ArmRuntime, &System)]) -> bool {
+    let kind = |runtime: &ArmRuntime| runtime.arm.task.tracking().map(|(kind, _)| kind);
+    let chains: Vec<_> = arms.iter().map(|(runtime, _)| &runtime.arm.chain).collect();
+    arms.iter().all(|(runtime, system)| system.is_plain() && kind(runtime) == kind(arms[0].0))
+        && SideBySide::<[f64; 4]>::new(&chains).is_some()
+}
+
+impl<A: LaneArray> LaneGroup<A> {
+    /// `None` unless the arms are alike enough; see [`LaneGroup`].
+    pub(in crate::planner) fn new(
+        arms: &[ArmRuntime],
+        systems: &[System],
+        members: &[LaneMember],
+    ) -> Option<Self> {
+        let pairs: Vec<_> =
+            members.iter().map(|member| (&arms[member.arm], &systems[member.system])).collect();
+        if !are_alike(&pairs) {
             return None;
         }
+        let own: Vec<_> = pairs.iter().map(|(runtime, _)| *runtime).collect();
         let chains = SideBySide::<A>::new(&own.iter().map(|runtime| &runtime.arm.chain).collect::<Vec<_>>())?;
         Some(Self {
             members: members.to_vec(),
-            task: own.first()?.arm.task,
+            task: own.first()?.arm.task.tracking()?.0,
             scratch: chains.scratch(),
             recorded: Recorded::new(&own, A::WIDTH),
             computed: vec![Reference::REST; A::WIDTH],
             found: Found::NOTHING,
-            on_course: OnCourse::new(&own),
-            is_on_course: false,
+            criteria: LaneCriteria::new(&own),
+            is_clear: false,
             damped: vec![false; A::WIDTH],
-            glance: Glance::new(&own),
-            board: Board::new(chains.dof()),
+            monitor: LaneMonitor::new(&own),
+            transpose: Transpose::new(chains.dof()),
             chains,
         })
     }
@@ -134,26 +112,29 @@ impl<A: LaneArray> Bundle<A> {
     fn resolve_by_law(
         &mut self,
         lane: usize,
-        runtime: &mut ArmRuntime,
-        (t, gain): (f64, f64),
+        group: &mut GroupMembers<'_>,
+        moment: Moment,
         x: &[f64],
         [f, g]: [&mut [f64]; 2],
     ) {
-        copy_lane::<A>(lane, x, &mut runtime.positions);
-        runtime.evaluate(t, gain);
-        let found = runtime.velocities.iter().zip(&runtime.feedback).enumerate();
-        for (joint, (&forward, &back)) in found {
+        let LaneMember { arm, system } = self.members[lane];
+        let system = &mut group.systems[system];
+        copy_lane::<A>(lane, x, system.positions_mut());
+        system.evaluate(group.arms, moment);
+        let [forward, back] = system.velocity();
+        for (joint, (&forward, &back)) in forward.iter().zip(back).enumerate() {
             f[joint * A::WIDTH + lane] = forward;
             g[joint * A::WIDTH + lane] = back;
         }
-        self.found.bound.as_mut()[lane] = runtime.resolution.smallest_singular_value;
-        self.damped[lane] = runtime.resolution.damped;
+        let resolution = &group.arms[arm].resolution;
+        self.found.bound.as_mut()[lane] = resolution.smallest_singular_value;
+        self.damped[lane] = resolution.damped;
     }
 
     /// Whether the answer of a lane means something and is that of its law.
     fn is_regular(&self, lane: usize, runtime: &ArmRuntime) -> bool {
         let at = |array: &A| array.as_ref()[lane];
-        at(&self.found.smallest_pivot) > 0.0 && at(&self.found.bound) > runtime.arm.law.threshold()
+        is_regular(at(&self.found.bound), at(&self.found.smallest_pivot), runtime.threshold)
     }
 }
 
@@ -173,51 +154,51 @@ fn fill_lanes<A: LaneArray>(used: usize, entries: &mut [f64]) {
     }
 }
 
-impl<A: LaneArray> Together for Bundle<A> {
+impl<A: LaneArray> ArmGroup for LaneGroup<A> {
     fn width(&self) -> usize {
         A::WIDTH
     }
 
     fn evaluate(
         &mut self,
-        level: Level,
-        at: (f64, f64),
-        arms: &mut [ArmRuntime],
+        group: &mut GroupMembers<'_>,
+        moment: Moment,
         x: &[f64],
         [f, g]: [&mut [f64]; 2],
     ) -> bool {
-        let recorded = self.recorded.as_ref().and_then(|recorded| recorded.at::<A>(at.0));
+        let recorded = self.recorded.as_ref().and_then(|recorded| recorded.at::<A>(moment.t));
         let references = recorded.unwrap_or_else(|| {
             for (lane, computed) in self.computed.iter_mut().enumerate() {
                 let member = self.members[lane.min(self.members.len() - 1)];
-                *computed = arms[member].arm.motion.at(at.0);
+                if let Some(motion) = motion(&group.arms[member.arm]) {
+                    *computed = motion.at(moment.t);
+                }
             }
             A::each(|lane| &self.computed[lane])
         });
         let evaluation = Evaluation {
             chains: &self.chains,
             scratch: &mut self.scratch,
-            on_course: &self.on_course,
+            criteria: &self.criteria,
             references: &references,
             x,
             f: &mut *f,
             g: &mut *g,
-            gain: at.1,
+            gain: moment.gain,
             found: &mut self.found,
         };
-        self.is_on_course = match self.task {
-            TaskKind::PositionXy => with_instructions(level, Rows::<_, 2>(evaluation)),
-            TaskKind::Position => with_instructions(level, Rows::<_, 3>(evaluation)),
-            TaskKind::Pose => with_instructions(level, Rows::<_, 6>(evaluation)),
+        self.is_clear = match self.task {
+            TaskKind::PositionXy => with_instructions(group.level, Rows::<_, 2>(evaluation)),
+            TaskKind::Position => with_instructions(group.level, Rows::<_, 3>(evaluation)),
+            TaskKind::Pose => with_instructions(group.level, Rows::<_, 6>(evaluation)),
         };
-        if self.is_on_course {
+        if self.is_clear {
             return true;
         }
         for lane in 0..self.members.len() {
-            let runtime = &mut arms[self.members[lane]];
             self.damped[lane] = false;
-            if !self.is_regular(lane, runtime) {
-                self.resolve_by_law(lane, runtime, at, x, [&mut *f, &mut *g]);
+            if !self.is_regular(lane, &group.arms[self.members[lane].arm]) {
+                self.resolve_by_law(lane, group, moment, x, [&mut *f, &mut *g]);
             }
         }
         fill_lanes::<A>(self.members.len(), f);
@@ -225,42 +206,52 @@ impl<A: LaneArray> Together for Bundle<A> {
         false
     }
 
-    fn watch(&mut self, level: Level, t: f64, arms: &mut [ArmRuntime], sample: &Sample<'_>) {
-        let look = Look { glance: &mut self.glance, board: &mut self.board, found: &self.found, t, sample };
-        if !with_instructions(level, look) {
-            self.remind(arms, sample.previous);
-            for (lane, &member) in self.members.iter().enumerate() {
+    fn observe(&mut self, group: &mut GroupMembers<'_>, t: f64, sample: &Sample<'_>) {
+        let look = Look {
+            monitor: &mut self.monitor,
+            transpose: &mut self.transpose,
+            found: &self.found,
+            t,
+            sample,
+        };
+        if !with_instructions(group.level, look) {
+            self.set_previous(group.arms, sample.previous);
+            for (lane, member) in self.members.iter().enumerate() {
                 let state = self.arm(lane);
-                arms[member].monitor.look_closely(t, state.positions, state.velocities);
+                group.arms[member.arm].monitor.look_closely(t, state.positions, state.velocities);
             }
         }
     }
 
     fn arm(&self, lane: usize) -> ArmState<'_> {
-        self.board.arm(lane, !self.is_on_course && self.damped[lane])
+        self.transpose.arm(lane, !self.is_clear && self.damped[lane])
     }
 
-    fn tell(&mut self, level: Level, arms: &mut [ArmRuntime], sample: &Sample<'_>) {
-        with_instructions(level, WriteUp { board: &mut self.board, found: &self.found, sample });
-        for (lane, &member) in self.members.iter().enumerate() {
-            let (state, runtime) = (self.arm(lane), &mut arms[member]);
+    fn scatter_to_arms(&mut self, group: &mut GroupMembers<'_>, sample: &Sample<'_>) {
+        let transposition = Transposition { transpose: &mut self.transpose, found: &self.found, sample };
+        with_instructions(group.level, transposition);
+        for (lane, member) in self.members.iter().enumerate() {
+            let (state, runtime) = (self.arm(lane), &mut group.arms[member.arm]);
             runtime.positions.copy_from_slice(state.positions);
             runtime.velocities.copy_from_slice(state.velocities);
             runtime.error = state.error;
-            runtime.resolution =
-                Resolution { smallest_singular_value: self.found.bound.as_ref()[lane], damped: state.damped };
+            runtime.resolution = Resolution {
+                smallest_singular_value: self.found.bound.as_ref()[lane],
+                damped: state.damped,
+                ..Resolution::default()
+            };
         }
     }
 
-    fn remind(&self, arms: &mut [ArmRuntime], previous: &[f64]) {
-        for (lane, &member) in self.members.iter().enumerate() {
-            copy_lane::<A>(lane, previous, &mut arms[member].monitor.previous);
+    fn set_previous(&self, arms: &mut [ArmRuntime], previous: &[f64]) {
+        for (lane, member) in self.members.iter().enumerate() {
+            copy_lane::<A>(lane, previous, &mut arms[member.arm].monitor.previous);
         }
     }
 
-    fn hand_over(&self, arms: &mut [ArmRuntime]) {
-        for (lane, &member) in self.members.iter().enumerate() {
-            self.glance.hand_over(lane, &mut arms[member].monitor);
+    fn flush_to_monitor(&self, arms: &mut [ArmRuntime]) {
+        for (lane, member) in self.members.iter().enumerate() {
+            self.monitor.flush_to(lane, &mut arms[member.arm].monitor);
         }
     }
 }
@@ -269,7 +260,7 @@ impl<A: LaneArray> Together for Bundle<A> {
 struct Evaluation<'a, A: LaneArray> {
     chains: &'a SideBySide<A>,
     scratch: &'a mut SideBySideScratch<A>,
-    on_course: &'a OnCourse<A>,
+    criteria: &'a LaneCriteria<A>,
     references: &'a A::Of<&'a Reference>,
     x: &'a [f64],
     f: &'a mut [f64],
@@ -302,12 +293,12 @@ fn load<S: Simd, A: LaneArray>(simd: S, array: &A) -> A::Vector<S> {
 struct Rows<'a, A: LaneArray, const M: usize>(Evaluation<'a, A>);
 
 impl<A: LaneArray, const M: usize> Kernel for Rows<'_, A, M> {
-    /// Whether all arms are clearly on course.
+    /// Whether no arm needs a closer look.
     type Output = bool;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
-        let Evaluation { chains, scratch, on_course, references, x, f, g, gain, found } = self.0;
+        let Evaluation { chains, scratch, criteria, references, x, f, g, gain, found } = self.0;
         let references = *references;
         let references = references.as_ref();
         let tips = chains.run(simd, x, scratch);
@@ -355,7 +346,7 @@ impl<A: LaneArray, const M: usize> Kernel for Rows<'_, A, M> {
         );
         resolved.bound.store(&mut found.bound);
         resolved.smallest_pivot.store(&mut found.smallest_pivot);
-        on_course.holds(simd, (resolved.bound, resolved.smallest_pivot), &deviation)
+        criteria.holds(simd, (resolved.bound, resolved.smallest_pivot), &deviation)
     }
 }
 
@@ -375,8 +366,10 @@ fn squares<V: Lanes, const M: usize>(error: &[V; M], zero: V) -> [V; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::planner::system::Arm;
     use crate::robot::embedded;
     use crate::task::{Circle, Motion, Planar, Sin2};
+    use fearless_simd::Level;
     use nalgebra::IsometryMatrix3;
 
     fn arm(task: TaskKind, turned: f64) -> ArmRuntime {
@@ -388,25 +381,31 @@ mod tests {
         ArmRuntime::new(Arm::new("arm", chain, q0, task, motion), 1e-3)
     }
 
-    /// Whether all arms are on course, and everything that was found.
-    fn answer<A: LaneArray>(level: Level, arms: &mut [ArmRuntime]) -> (bool, Vec<f64>) {
-        let members: Vec<_> = (0..arms.len()).collect();
-        let mut bundle = Bundle::<A>::new(arms, &members).unwrap();
+    /// Whether no arm needs a closer look, and everything that was found.
+    fn answer<A: LaneArray>(level: Level, task: TaskKind, turns: &[f64]) -> (bool, Vec<f64>) {
+        let mut arms: Vec<_> = turns.iter().map(|turned| arm(task, *turned)).collect();
+        let system = |arm: usize| LaneMember { arm, system: arm };
+        let members: Vec<_> = (0..arms.len()).map(system).collect();
+        let mut systems: Vec<_> =
+            (0..arms.len()).map(|arm| System::new(&mut arms, &[arm], &[], None, 1e-3).unwrap()).collect();
+        let mut lanes = LaneGroup::<A>::new(&arms, &systems, &members).unwrap();
         let mut x = Vec::new();
         for joint in 0..7 {
             x.extend((0..A::WIDTH).map(|lane| arms[lane.min(arms.len() - 1)].arm.q0[joint]));
         }
         x.resize(x.len().next_multiple_of(4), 0.0);
         let (mut f, mut g) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-        let is_on_course = bundle.evaluate(level, (0.7, 20.0), arms, &x, [&mut f, &mut g]);
-        let Found { error, deviation, bound, smallest_pivot } = bundle.found;
+        let moment = Moment { t: 0.7, gain: 20.0, sample: None };
+        let mut group = GroupMembers { arms: &mut arms, systems: &mut systems, level };
+        let is_clear = lanes.evaluate(&mut group, moment, &x, [&mut f, &mut g]);
+        let Found { error, deviation, bound, smallest_pivot } = lanes.found;
         let found = error.into_iter().chain(deviation).chain([bound, smallest_pivot]);
         let found = found.flat_map(|lanes| lanes.as_ref().to_vec());
-        (is_on_course, found.chain(f).chain(g).collect())
+        (is_clear, found.chain(f).chain(g).collect())
     }
 
-    fn check<A: LaneArray>(arms: &mut [ArmRuntime]) {
-        let [wide, base] = [Level::new(), Level::baseline()].map(|level| answer::<A>(level, arms));
+    fn check<A: LaneArray>(task: TaskKind, turns: &[f64]) {
+        let [wide, base] = [Level::new(), Level::baseline()].map(|level| answer::<A>(level, task, turns));
         assert_eq!(wide.0, base.0);
         for (wide, base) in wide.1.into_iter().zip(base.1) {
             assert!((wide - base).abs() <= 1e-13 * (1.0 + base.abs()), "{wide} {base}");
@@ -417,11 +416,11 @@ mod tests {
     fn every_set_of_instructions_gives_the_same_but_for_rounding() {
         for task in TaskKind::ALL {
             // Small orientation errors, and one that the series does not reach.
-            let mut arms = [arm(task, 0.0), arm(task, 0.02), arm(task, 0.5)];
+            let turns = [0.0, 0.02, 0.5];
             for count in [1, 2] {
-                check::<[f64; 2]>(&mut arms[..count]);
+                check::<[f64; 2]>(task, &turns[..count]);
             }
-            check::<[f64; 4]>(&mut arms);
+            check::<[f64; 4]>(task, &turns);
         }
     }
 }

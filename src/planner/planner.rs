@@ -1,42 +1,6 @@
-use super::field::SynchronousField;
-use super::fleet::{Description, Fleet};
-use super::runtime::ArmRuntime;
-use super::{Noise, Plan, PlanStatus, PlannerBuilder};
+use super::run::{Description, Ensemble, Noise, Plan, Stop, SynchronousField};
+use super::system::ArmState;
 use crate::integrate::Multistep;
-use nalgebra::Vector6;
-
-/// Why and where a run stopped early.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stop {
-    /// The kind of stop.
-    pub status: PlanStatus,
-    /// The reason as a sentence.
-    pub reason: String,
-}
-
-/// One arm at the present sample.
-#[derive(Clone, Copy, Debug)]
-pub struct ArmState<'a> {
-    /// Joint positions [rad or m].
-    pub positions: &'a [f64],
-    /// Feedforward joint velocities [rad/s or m/s].
-    pub velocities: &'a [f64],
-    /// Task error (linear \[m\]; angular \[rad\]).
-    pub error: Vector6<f64>,
-    /// Whether the law damped its answer here.
-    pub damped: bool,
-}
-
-impl<'a> ArmState<'a> {
-    pub(super) fn of(arm: &'a ArmRuntime) -> Self {
-        Self {
-            positions: &arm.positions,
-            velocities: &arm.velocities,
-            error: arm.error,
-            damped: arm.resolution.damped,
-        }
-    }
-}
 
 /// A formula, arms, tasks and laws, ready to run: as a whole with [`run`](Self::run), or sample by sample in a control
 /// loop with [`step`](Self::step), which allocates nothing.
@@ -60,7 +24,7 @@ impl<'a> ArmState<'a> {
 /// ```
 pub struct Planner {
     /// Of this plan alone.
-    fleet: Fleet,
+    ensemble: Ensemble,
 }
 
 impl std::fmt::Debug for Planner {
@@ -70,37 +34,32 @@ impl std::fmt::Debug for Planner {
 }
 
 impl Planner {
-    /// An empty builder.
-    pub fn builder() -> PlannerBuilder {
-        PlannerBuilder::default()
-    }
-
-    /// Takes a stepper whose first state has been evaluated and told to the arms.
+    /// Takes a stepper whose first state has been evaluated and scattered to the arms.
     pub(super) fn begin(
         description: Description,
         stepper: Multistep<f64>,
         field: SynchronousField,
         noise: Option<Noise>,
     ) -> Self {
-        Self { fleet: Fleet::begin(description, stepper, field, noise) }
+        Self { ensemble: Ensemble::begin(description, stepper, field, noise) }
     }
 
     fn description(&self) -> &Description {
-        &self.fleet.courses[0].description
+        &self.ensemble.runs[0].description
     }
 
-    pub(super) fn into_fleet(self) -> Fleet {
-        self.fleet
+    pub(super) fn into_ensemble(self) -> Ensemble {
+        self.ensemble
     }
 
     /// The index of the present sample.
     pub fn index(&self) -> usize {
-        self.fleet.index(0)
+        self.ensemble.index(0)
     }
 
     /// The time of the present sample \[s\].
     pub fn time(&self) -> f64 {
-        self.fleet.time(0)
+        self.ensemble.time(0)
     }
 
     /// Steps of the whole plan.
@@ -125,12 +84,12 @@ impl Planner {
 
     /// Whether the last sample was reached or the run has stopped.
     pub fn is_finished(&self) -> bool {
-        self.fleet.is_finished(0)
+        self.ensemble.is_finished(0)
     }
 
     /// Why the run stopped early, if it did.
     pub fn stop(&self) -> Option<&Stop> {
-        self.fleet.courses[0].stop.as_ref()
+        self.ensemble.runs[0].stop.as_ref()
     }
 
     /// Arm `i` (in the order in which arms were added) at the present sample.
@@ -138,7 +97,7 @@ impl Planner {
     /// # Panics
     /// If there is no arm `i`.
     pub fn arm(&self, i: usize) -> ArmState<'_> {
-        self.fleet.field.arm(i)
+        self.ensemble.field.arm(i)
     }
 
     /// Goes to the next sample; does nothing once [finished](Self::is_finished).
@@ -146,7 +105,7 @@ impl Planner {
     /// A run that stops does so at a sample that lies beyond its bounds: look at [`is_finished`](Self::is_finished) before
     /// sending positions on.
     pub fn step(&mut self) {
-        self.fleet.step();
+        self.ensemble.step();
     }
 
     /// Runs to the end and returns the trajectories.
@@ -156,6 +115,6 @@ impl Planner {
 
     /// Runs to the end, telling `progress` after every step how many of how many are done.
     pub fn run_with(self, progress: impl FnMut(usize, usize)) -> Plan {
-        self.fleet.run_with(progress).remove(0)
+        self.ensemble.run_with(progress).remove(0)
     }
 }

@@ -1,26 +1,15 @@
 //! The limits and figures of arms side by side, in the form in which most samples are done with at a glance.
 
-use super::board::Board;
-use super::bundle::Sample;
-use super::lost::{Bounds, NEAR};
-use super::monitor::Monitor;
-use super::runtime::ArmRuntime;
+use super::found::Found;
+use super::sample::Sample;
+use super::transpose::Transpose;
 use crate::math::{Kernel, LaneArray, Lanes};
+use crate::planner::system::{ArmRuntime, JointLimits, Monitor, excess};
 use fearless_simd::Simd;
-
-/// What is compared with the limits of one joint of all lanes.
-#[derive(Clone, Copy, Debug)]
-struct JointLimits<A> {
-    lower: A,
-    upper: A,
-    velocity: A,
-    /// How far a joint may go in one step, less what rounding could make of it.
-    stride: A,
-}
 
 /// What tells that every lane is on its path, far from singularities.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct OnCourse<A> {
+pub(in crate::planner) struct LaneCriteria<A> {
     /// The least bound of the smallest singular value.
     conditioning: A,
     /// The largest squares of the position error \[m^2\] and of the orientation error \[rad^2\].
@@ -38,30 +27,17 @@ struct Extremes<A> {
     smallest_at: A,
 }
 
-/// What an evaluation found in all lanes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found<A> {
-    pub(super) error: [A; 6],
-    /// The squares of the position error and of the orientation error.
-    pub(super) deviation: [A; 2],
-    /// The lower bound of the smallest singular value, where nothing else was found out.
-    pub(super) bound: A,
-    pub(super) smallest_pivot: A,
-}
-
-impl<A: LaneArray> Found<A> {
-    pub(super) const NOTHING: Self =
-        Self { error: [A::ZERO; 6], deviation: [A::ZERO; 2], bound: A::ZERO, smallest_pivot: A::ZERO };
-}
-
 /// Joint limits and extremes of all lanes.
-pub(super) struct Glance<A> {
+pub(in crate::planner) struct LaneMonitor<A> {
     joints: Vec<JointLimits<A>>,
     extremes: Extremes<A>,
 }
 
 /// One real per arm; the last arm fills the lanes that are left.
-pub(super) fn of_lanes<A: LaneArray>(arms: &[&ArmRuntime], pick: impl Fn(&ArmRuntime) -> f64) -> A {
+pub(in crate::planner) fn of_lanes<A: LaneArray>(
+    arms: &[&ArmRuntime],
+    pick: impl Fn(&ArmRuntime) -> f64,
+) -> A {
     let mut array = A::ZERO;
     for (lane, entry) in array.as_mut().iter_mut().enumerate() {
         *entry = pick(arms[lane.min(arms.len() - 1)]);
@@ -69,21 +45,20 @@ pub(super) fn of_lanes<A: LaneArray>(arms: &[&ArmRuntime], pick: impl Fn(&ArmRun
     array
 }
 
-impl<A: LaneArray> OnCourse<A> {
-    pub(super) fn new(arms: &[&ArmRuntime]) -> Self {
-        let largest = |arm: &ArmRuntime| Bounds::largest(&arm.bounds, 1.0);
+impl<A: LaneArray> LaneCriteria<A> {
+    pub(in crate::planner) fn new(arms: &[&ArmRuntime]) -> Self {
         Self {
-            conditioning: of_lanes(arms, |arm| NEAR * arm.arm.law.threshold()),
+            conditioning: of_lanes(arms, |arm| arm.stop_criteria().conditioning),
             deviation: [
-                of_lanes(arms, |arm| largest(arm).position),
-                of_lanes(arms, |arm| largest(arm).orientation),
+                of_lanes(arms, |arm| arm.stop_criteria().deviation.position),
+                of_lanes(arms, |arm| arm.stop_criteria().deviation.orientation),
             ],
         }
     }
 
-    /// Whether all lanes are; not so with a NaN.
+    /// Whether no lane needs a closer look; not so with a NaN.
     #[inline(always)]
-    pub(super) fn holds<V: Lanes<Array = A>>(
+    pub(in crate::planner) fn holds<V: Lanes<Array = A>>(
         &self,
         token: V::Token,
         (bound, smallest_pivot): (V, V),
@@ -111,11 +86,11 @@ impl<A: LaneArray> Extremes<A> {
     }
 }
 
-impl<A: LaneArray> Glance<A> {
-    pub(super) fn new(arms: &[&ArmRuntime]) -> Self {
+impl<A: LaneArray> LaneMonitor<A> {
+    pub(in crate::planner) fn new(arms: &[&ArmRuntime]) -> Self {
         let joint = |i: usize| {
-            let limit = |pick: fn(&crate::planner::monitor::Limit) -> f64| {
-                of_lanes(arms, |arm| pick(&arm.monitor.limits()[i]))
+            let limit = |pick: fn(&JointLimits<[f64; 1]>) -> [f64; 1]| {
+                of_lanes(arms, |arm| pick(&arm.monitor.limits()[i])[0])
             };
             JointLimits {
                 lower: limit(|limit| limit.lower),
@@ -128,8 +103,8 @@ impl<A: LaneArray> Glance<A> {
         Self { joints: (0..joints).map(joint).collect(), extremes: Extremes::none() }
     }
 
-    /// Gives the monitor of an arm what was seen in its lane.
-    pub(super) fn hand_over(&self, lane: usize, monitor: &mut Monitor) {
+    /// Gives the monitor of an arm what was observed in its lane.
+    pub(in crate::planner) fn flush_to(&self, lane: usize, monitor: &mut Monitor) {
         let at = |array: &A| array.as_ref()[lane];
         let seen = &self.extremes;
         monitor.observe_extremes(
@@ -141,12 +116,12 @@ impl<A: LaneArray> Glance<A> {
 }
 
 /// A look at a sample in which all arms are on their paths.
-pub(super) struct Look<'a, A> {
-    pub(super) glance: &'a mut Glance<A>,
-    pub(super) board: &'a mut Board<A>,
-    pub(super) found: &'a Found<A>,
-    pub(super) t: f64,
-    pub(super) sample: &'a Sample<'a>,
+pub(in crate::planner) struct Look<'a, A> {
+    pub(in crate::planner) monitor: &'a mut LaneMonitor<A>,
+    pub(in crate::planner) transpose: &'a mut Transpose<A>,
+    pub(in crate::planner) found: &'a Found<A>,
+    pub(in crate::planner) t: f64,
+    pub(in crate::planner) sample: &'a Sample<'a>,
 }
 
 impl<A: LaneArray> Kernel for Look<'_, A> {
@@ -156,23 +131,18 @@ impl<A: LaneArray> Kernel for Look<'_, A> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
         let load = |array: &A| <A::Vector<S> as Lanes>::load(simd, array);
-        self.board.write(simd, self.sample, self.found);
-        note_extremes(simd, &mut self.glance.extremes, self.found, self.t);
+        self.transpose.write(simd, self.sample, self.found);
+        note_extremes(simd, &mut self.monitor.extremes, self.found, self.t);
         let zero = load(&A::ZERO);
-        let mut excess = zero;
+        let mut most = zero;
         let Sample { positions, previous, velocities } = *self.sample;
-        let joints = self.glance.joints.iter().zip(positions.chunks_exact(A::WIDTH));
+        let joints = self.monitor.joints.iter().zip(positions.chunks_exact(A::WIDTH));
         let motion = previous.chunks_exact(A::WIDTH).zip(velocities.chunks_exact(A::WIDTH));
         for ((limits, q), (previous, velocity)) in joints.zip(motion) {
             let read = |values: &[f64]| <A::Vector<S> as Lanes>::load_slice(simd, values);
-            let (q, previous, velocity) = (read(q), read(previous), read(velocity));
-            // A NaN is no crossing.
-            excess = (q - load(&limits.upper)).greatest(excess);
-            excess = (load(&limits.lower) - q).greatest(excess);
-            excess = (velocity.abs() - load(&limits.velocity)).greatest(excess);
-            excess = ((q - previous).abs() - load(&limits.stride)).greatest(excess);
+            most = excess(simd, limits, [read(q), read(previous), read(velocity)], most);
         }
-        zero.all_at_least(excess)
+        zero.all_at_least(most)
     }
 }
 

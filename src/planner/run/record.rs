@@ -1,0 +1,152 @@
+use super::plan::{ArmPlan, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
+use crate::planner::system::{ArmRuntime, ArmState, Monitor, System};
+use nalgebra::Vector6;
+
+/// What a plan says of itself.
+#[derive(Clone, Debug)]
+pub(in crate::planner) struct Description {
+    pub(in crate::planner) formula: String,
+    pub(in crate::planner) sigma: f64,
+    pub(in crate::planner) h: f64,
+    /// Whether `h` lies in the formula's feedback range.
+    pub(in crate::planner) is_stable: bool,
+    pub(in crate::planner) start: &'static str,
+    pub(in crate::planner) steps: usize,
+    /// The largest rate [1/s] of null-space criteria that the row follows at this gap.
+    pub(in crate::planner) largest_criterion_rate: f64,
+    pub(in crate::planner) warnings: Vec<String>,
+}
+
+/// What is recorded of a run sample after sample.
+pub(in crate::planner) struct Record {
+    arms: Vec<ArmPlan>,
+    tasks: Vec<TaskPlan>,
+}
+
+impl Record {
+    /// An empty record with room for a run of so many steps.
+    pub(in crate::planner) fn new<'a>(
+        arms: &[ArmRuntime],
+        systems: impl Iterator<Item = &'a System>,
+        steps: usize,
+    ) -> Self {
+        let tasks = systems.flat_map(|system| {
+            system.added_tasks().map(|((state, rows), _)| TaskPlan {
+                name: state.task.name().to_owned(),
+                arms: system.arms_of(state).map(str::to_owned).collect(),
+                rows: rows.rows(),
+                errors: Vec::with_capacity((steps + 1) * rows.rows()),
+            })
+        });
+        Self { arms: arms.iter().map(|arm| empty_plan(arm, steps)).collect(), tasks: tasks.collect() }
+    }
+
+    /// Adds a sample of the arms.
+    pub(in crate::planner) fn write_arms<'a>(&mut self, arms: impl Iterator<Item = ArmState<'a>>) {
+        for (state, plan) in arms.zip(&mut self.arms) {
+            plan.positions.extend_from_slice(state.positions);
+            plan.velocities.extend_from_slice(state.velocities);
+            plan.errors.push(state.error);
+        }
+    }
+
+    /// Adds a sample of the tasks beside those of the arms.
+    pub(in crate::planner) fn write_tasks<'a>(&mut self, systems: impl Iterator<Item = &'a System>) {
+        let added = systems.flat_map(System::added_tasks);
+        for (((_, rows), _), plan) in added.zip(&mut self.tasks) {
+            plan.errors.extend_from_slice(&rows.error);
+        }
+    }
+
+    /// The plan that came of it.
+    pub(in crate::planner) fn conclude<'a>(
+        mut self,
+        description: Description,
+        stop: Option<Stop>,
+        arms: &[ArmRuntime],
+        systems: impl Iterator<Item = &'a System>,
+    ) -> Plan {
+        let Description { formula, sigma, h, start, steps, mut warnings, largest_criterion_rate, .. } =
+            description;
+        for (plan, runtime) in self.arms.iter_mut().zip(arms) {
+            take_figures(plan, &runtime.monitor);
+            plan.violations = runtime.monitor.violations(&runtime.arm.chain);
+            warnings.extend(damping_warning(plan, runtime.threshold));
+            warnings.extend(rate_warning(&plan.name, runtime.monitor.largest_rate, largest_criterion_rate));
+        }
+        let (status, reason) = match stop {
+            Some(stop) => (stop.status, Some(stop.reason)),
+            None => (PlanStatus::Completed, None),
+        };
+        let shared = systems.filter(|system| system.arms().count() > 1);
+        let shared =
+            shared.map(|system| SharedJoints { arms: system.arm_names(), joints: system.joints_in_common() });
+        let (arms, tasks) = (self.arms, self.tasks);
+        let shared = shared.filter(|shared| !shared.joints.is_empty()).collect();
+        Plan { status, reason, formula, sigma, h, start, steps, noise: None, arms, tasks, shared, warnings }
+    }
+}
+
+/// Takes over what was watched on every sample.
+fn take_figures(plan: &mut ArmPlan, monitor: &Monitor) {
+    plan.max_error = monitor.max_error();
+    plan.max_error_component = monitor.max_error_component;
+    plan.max_error_steady = steady_maximum(&plan.errors);
+    plan.rms_error_steady = steady_mean_square(&plan.errors).sqrt();
+    plan.max_position_error = monitor.max_position_error();
+    plan.max_orientation_error = monitor.max_orientation_error();
+    plan.smallest_singular_value = (monitor.smallest_singular_value, monitor.smallest_at);
+    plan.damped_samples = monitor.damped_samples;
+}
+
+/// The largest norm over the second half of the samples.
+fn steady_maximum(errors: &[Vector6<f64>]) -> f64 {
+    errors[errors.len() / 2..].iter().map(Vector6::norm).fold(0.0, f64::max)
+}
+
+/// The mean square of the norm over the second half of the samples.
+fn steady_mean_square(errors: &[Vector6<f64>]) -> f64 {
+    let half = &errors[errors.len() / 2..];
+    half.iter().map(Vector6::norm_squared).sum::<f64>() / half.len() as f64
+}
+
+fn damping_warning(plan: &ArmPlan, threshold: f64) -> Option<String> {
+    let (smallest, at) = plan.smallest_singular_value;
+    (plan.damped_samples > 1).then(|| {
+        format!(
+            "arm `{}` came near a singularity: damped least squares acted on {} samples; the smallest singular value was {smallest:.3e} at t = {at:.6} s (threshold {threshold:.3e})",
+            plan.name, plan.damped_samples
+        )
+    })
+}
+
+/// A criterion whose rate depends on the configuration can only be watched.
+fn rate_warning(arm: &str, (rate, at): (f64, f64), limit: f64) -> Option<String> {
+    (rate > limit).then(|| {
+        format!(
+            "arm `{arm}`: the null-space criteria reached a rate of {rate:.6} 1/s at t = {at:.6} s, and at this sigma the formula follows rates below {limit:.6} 1/s only; lower their rates or sigma"
+        )
+    })
+}
+
+fn empty_plan(runtime: &ArmRuntime, steps: usize) -> ArmPlan {
+    let joints = runtime.arm.joint_names();
+    let entries = (steps + 1) * joints.len();
+    ArmPlan {
+        name: runtime.arm.name.clone(),
+        joints,
+        positions: Vec::with_capacity(entries),
+        velocities: Vec::with_capacity(entries),
+        errors: Vec::with_capacity(steps + 1),
+        max_error: 0.0,
+        max_error_component: 0.0,
+        max_error_steady: 0.0,
+        rms_error_steady: 0.0,
+        max_position_error: 0.0,
+        max_orientation_error: 0.0,
+        smallest_singular_value: (f64::INFINITY, 0.0),
+        damped_samples: 0,
+        violations: Vec::new(),
+        start_distance: runtime.arm.start_distance,
+    }
+}

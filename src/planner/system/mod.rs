@@ -1,0 +1,30 @@
+//! Arms and the systems that they form: which joints are resolved together, by which law, for which tasks, within which limits.
+
+mod arm;
+mod arm_runtime;
+mod arm_state;
+mod bounds;
+mod derivative_errors;
+mod disturbance;
+mod joint_index;
+mod joint_sets;
+mod joint_system;
+mod limits;
+mod monitor;
+mod resolved;
+
+pub use arm::Arm;
+pub use arm_state::ArmState;
+pub use derivative_errors::{DerivativeErrors, derivative_errors};
+pub use joint_system::JointSystem;
+pub use monitor::Violation;
+
+pub(super) use arm_runtime::ArmRuntime;
+pub(super) use bounds::{Bounds, Deviation};
+pub(super) use disturbance::Disturbance;
+pub(super) use joint_index::JointIndex;
+pub(super) use joint_sets::{check_common_starts, joint_sets};
+pub(super) use joint_system::AddedTask;
+pub(super) use limits::{JointLimits, excess};
+pub(super) use monitor::Monitor;
+pub(super) use resolved::{Moment, System};
