@@ -24,6 +24,7 @@ mod rotation;
 mod routh;
 mod sin_cos;
 mod singular;
+mod square_free;
 mod wide;
 
 pub use algebraic::{AlgebraicNumber, Surd};

@@ -4,11 +4,10 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use crate::formula::CheckedRow;
-
 use super::error::SearchError;
 use super::evolve::{Best, Random, evolve};
 use super::figures::Figures;
+use super::found::Found;
 use super::front::front;
 use super::judge::Judge;
 use super::lattice::{Candidate, descend};
@@ -89,19 +88,6 @@ pub trait Observer: Sync {
 
 /// Nobody watches.
 impl Observer for () {}
-
-/// A row that was found, with its exactly decided figures.
-#[derive(Debug, Clone)]
-pub struct Found {
-    /// The row, which declares nothing; [`CheckedRow::to_toml`] writes it with all its facts.
-    pub checked: CheckedRow,
-    /// The figures.
-    pub figures: Figures,
-    /// The merit of the figures (see [`Objective::merit`]).
-    pub merit: f64,
-    /// The denominator of the free coefficients.
-    pub denominator: u32,
-}
 
 /// What a search has found.
 #[derive(Debug, Clone)]
