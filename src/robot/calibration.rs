@@ -6,9 +6,9 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 use thiserror::Error;
 
 use super::displacement::displacement;
+use super::report::Report;
 use super::size::MAX_SIZE;
 use super::toml_table::{Entries, read_toml, wrong_type};
-use super::urdf::report::Report;
 use super::{Defect, Diagnostic, JointKind, Robot, diagnostic, names};
 
 /// The keys of one joint's corrections.

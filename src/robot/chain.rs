@@ -3,7 +3,7 @@
 use nalgebra::IsometryMatrix3;
 
 use super::segment::{Folded, Frame, Single};
-use super::{ChainScratch, JointKind, Limits};
+use super::{JointKind, Limits};
 
 /// A joint of a chain: one column of its Jacobian.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,11 +116,6 @@ impl Chain {
         let start = self.folded.start.map(|[entry]| entry).isometry();
         mounted.folded.start = Frame::new(&(world_from_base * start)).map(|entry| [entry]);
         mounted
-    }
-
-    /// Returns working memory for [`Chain::forward`]: one per thread.
-    pub fn scratch(&self) -> ChainScratch {
-        ChainScratch::with_length(self.places.len())
     }
 
     /// The smallest and largest position of each joint \[rad\] or \[m\], in the order of `q`.

@@ -153,7 +153,7 @@ pub(super) fn into_twist<V: Lanes>(token: V::Token, axis: &mut Axis<V::Array>, m
 }
 
 impl ChainScratch {
-    pub(super) fn with_length(length: usize) -> ChainScratch {
+    fn with_length(length: usize) -> ChainScratch {
         ChainScratch {
             level: level(),
             motions: Motions::with_length(length),
@@ -209,6 +209,11 @@ impl Kernel for Columns<'_> {
 }
 
 impl Chain {
+    /// Returns working memory for [`Chain::forward`]: one per thread.
+    pub fn scratch(&self) -> ChainScratch {
+        ChainScratch::with_length(self.places.len())
+    }
+
     /// Runs the kinematics at joint positions `q` \[rad\] or \[m\] (one per [`Chain::joints`]) and returns the
     /// chain posed there. Allocates nothing, unless `scratch` was made for a chain with fewer moving axes.
     ///

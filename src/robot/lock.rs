@@ -165,17 +165,6 @@ impl Robot {
         Ok(())
     }
 
-    /// The place of a joint among [`Robot::joints`].
-    pub(super) fn joint_index(&self, name: &str) -> Option<usize> {
-        self.joints.iter().position(|joint| joint.name == name)
-    }
-
-    /// The joints whose names look like `name`, nearest first.
-    pub(super) fn joints_like(&self, name: &str) -> Vec<String> {
-        let all = self.joints.iter().map(|joint| joint.name.as_str());
-        names::nearest(name, all).into_iter().map(str::to_owned).collect()
-    }
-
     fn no_such_joint(&self, name: &str) -> LockError {
         if let Some(stray) = self.strays.iter().find(|stray| stray.name == name) {
             return LockError::Defective { joint: name.to_owned(), defect: stray.defect.clone() };

@@ -7,6 +7,7 @@
 
 mod calibration;
 mod chain;
+mod chain_error;
 mod dh;
 mod diagnostic;
 mod displacement;
@@ -17,12 +18,16 @@ mod fold;
 mod follow;
 mod kinematics;
 mod lock;
+mod lookup;
 mod model;
 mod names;
 pub(crate) mod nearby;
 mod path;
+mod places;
 mod poses;
 mod positions;
+mod read_error;
+mod report;
 mod segment;
 mod side_by_side;
 mod size;
@@ -34,17 +39,18 @@ mod visual;
 
 pub use calibration::{Calibration, CalibrationError, JointCorrection};
 pub use chain::{Chain, ChainJoint, LimitViolation};
+pub use chain_error::ChainError;
 pub use dh::{DhConvention, DhError, DhRow, DhTable};
 pub use diagnostic::{Diagnostic, Severity};
 pub use export::ExportError;
 pub use kinematics::{ChainScratch, Posed};
 pub use lock::LockError;
 pub use model::{Defect, Joint, JointKind, Limits, Link, Mimic, Robot};
-pub use path::ChainError;
 pub use positions::PositionsError;
+pub use read_error::ReadError;
 pub use tool::ToolError;
 pub use tree::{TreeRow, TreeRows};
-pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, ReadError, UrdfError, UrdfOptions};
+pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 
 #[cfg(feature = "cli")]

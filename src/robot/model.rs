@@ -2,14 +2,10 @@
 
 use std::collections::HashMap;
 use std::fmt;
-use std::path::Path;
 
 use nalgebra::{IsometryMatrix3, Vector3};
 
-use super::path::{self, ChainError};
-use super::tree::TreeRows;
-use super::urdf;
-use super::{Chain, Diagnostic, ReadError, UrdfError, UrdfOptions};
+use super::Diagnostic;
 
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -206,54 +202,6 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// Returns the robot that a URDF text describes, with everything found wrong in it as
-    /// [`diagnostics`](Robot::diagnostics). A defective joint spoils only the chains through it.
-    ///
-    /// # Errors
-    /// [`UrdfError`] when no robot can be made at all: the text is not XML, not URDF (SDF, MJCF, xacro), holds
-    /// a DTD, has no link, or exceeds the size caps. The error carries every finding with its place.
-    ///
-    /// ```
-    /// use kinstep::robot::Robot;
-    /// let robot = Robot::from_urdf(
-    ///     r#"<robot name="pendulum">
-    ///          <link name="base"/> <link name="bob"/>
-    ///          <joint name="pivot" type="continuous">
-    ///            <parent link="base"/> <child link="bob"/> <axis xyz="0 1 0"/>
-    ///          </joint>
-    ///        </robot>"#,
-    /// )?;
-    /// assert_eq!(robot.joints()[0].name, "pivot");
-    /// # Ok::<(), kinstep::robot::UrdfError>(())
-    /// ```
-    pub fn from_urdf(text: &str) -> Result<Robot, UrdfError> {
-        urdf::read_text(text, &UrdfOptions::default())
-    }
-
-    /// As [`Robot::from_urdf`], with options.
-    ///
-    /// # Errors
-    /// As [`Robot::from_urdf`].
-    pub fn from_urdf_with(text: &str, options: &UrdfOptions) -> Result<Robot, UrdfError> {
-        urdf::read_text(text, options)
-    }
-
-    /// As [`Robot::from_urdf_with`], from bytes whose encoding is checked first: UTF-8, with or without a mark.
-    ///
-    /// # Errors
-    /// As [`Robot::from_urdf`]; also when the bytes are not UTF-8 (the message names the encoding).
-    pub fn from_urdf_bytes(bytes: &[u8], options: &UrdfOptions) -> Result<Robot, UrdfError> {
-        urdf::read_bytes(bytes, options)
-    }
-
-    /// As [`Robot::from_urdf_bytes`], from a file; a robot without a name is called after the file.
-    ///
-    /// # Errors
-    /// [`ReadError::File`] when the file can not be read, [`ReadError::Urdf`] as [`Robot::from_urdf`].
-    pub fn from_urdf_file(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<Robot, ReadError> {
-        urdf::read_file(path.as_ref(), options)
-    }
-
     /// A robot of links depth first and their joints in that order.
     pub(super) fn assembled(name: String, links: Vec<Link>, joints: Vec<Joint>) -> Robot {
         let link_by_name = links.iter().enumerate().map(|(i, link)| (link.name.clone(), i)).collect();
@@ -302,20 +250,5 @@ impl Robot {
             has_child[joint.parent] = true;
         }
         self.links.iter().zip(has_child).filter(|(_, has_child)| !has_child).map(|(link, _)| link)
-    }
-
-    /// The tree as people draw it: one row per link, depth first, with the joint above it.
-    pub fn tree(&self) -> TreeRows<'_> {
-        TreeRows::new(self)
-    }
-
-    /// Returns the directed path from link `base` to link `tip`, in either direction and through a common
-    /// ancestor if need be, ready for kinematics. Links with only fixed joints between them make a chain of no joints.
-    ///
-    /// # Errors
-    /// [`ChainError`]: a link that does not exist (with the nearest names), `base` equal to `tip`, links that
-    /// no joints connect, or a joint on the way that is defective or of a kind that a chain can not carry.
-    pub fn chain(&self, base: &str, tip: &str) -> Result<Chain, ChainError> {
-        path::chain(self, base, tip)
     }
 }

@@ -2,6 +2,13 @@
 
 use super::{Joint, Link, Robot};
 
+impl Robot {
+    /// The tree as people draw it: one row per link, depth first, with the joint above it.
+    pub fn tree(&self) -> TreeRows<'_> {
+        TreeRows::new(self)
+    }
+}
+
 /// One row of the drawn tree: a link, the joint above it and where it stands.
 #[derive(Debug, Clone, Copy)]
 pub struct TreeRow<'a> {
@@ -27,7 +34,7 @@ pub struct TreeRows<'a> {
 }
 
 impl<'a> TreeRows<'a> {
-    pub(super) fn new(robot: &'a Robot) -> TreeRows<'a> {
+    fn new(robot: &'a Robot) -> TreeRows<'a> {
         let mut depths = vec![0; robot.links.len()];
         let mut last_child = vec![usize::MAX; robot.links.len()];
         for joint in &robot.joints {
