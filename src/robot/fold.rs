@@ -170,7 +170,7 @@ impl Columns {
 }
 
 /// Returns a driver's limits narrowed to what one of its followers allows.
-pub(super) fn narrowed(driver: Limits, follower: &Joint) -> Limits {
+fn narrowed(driver: Limits, follower: &Joint) -> Limits {
     let Some(mimic) = follower.mimic else { return driver };
     let at = |position: f64| (position - mimic.offset) / mimic.multiplier;
     let (a, b) = (at(follower.limits.lower), at(follower.limits.upper));

@@ -41,7 +41,7 @@ pub(super) fn read_joints(
     Some(joints.map(|node| Reader::new(node, version, options, report).read()).collect())
 }
 
-impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
+impl<'a, 'i> Reader<'_, 'a, 'i, '_> {
     fn read(mut self) -> RawJoint {
         match name_of(self.node) {
             Ok(name) => name.clone_into(&mut self.joint.name),
