@@ -69,7 +69,7 @@ fn gather(root: &Path, path: &str, files: &mut Vec<(String, String)>) {
 }
 
 impl Sources {
-    /// Reads the files of a workspace, given by path and text. A member in whose folder's name there is a room is that
+    /// Reads the files of a workspace, given by path and text. A member whose folder is called after a room is that
     /// room; of the others, as of the root package, every module at the top is a room.
     pub(super) fn new(files: &[(String, String)], rooms: &BTreeSet<String>) -> Self {
         let mut sources = Self::default();

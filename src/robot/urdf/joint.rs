@@ -12,7 +12,7 @@ use super::raw_joint::{RawJoint, Reference};
 use super::reader::Reader;
 use super::version::Version;
 use super::{MAX_JOINTS, UrdfOptions, number};
-use crate::math::figure;
+use crate::math::number_text;
 use crate::robot::JointKind;
 use crate::robot::names::{list, quote};
 use crate::robot::report::Report;
@@ -186,7 +186,11 @@ impl<'a, 'i> Reader<'_, 'a, 'i, '_> {
         if (length - 1.0).abs() > UNIT_TOLERANCE {
             self.note(
                 place,
-                &format!("its axis {} has length {}; normalised", quote(attribute.value()), figure(length)),
+                &format!(
+                    "its axis {} has length {}; normalised",
+                    quote(attribute.value()),
+                    number_text(length)
+                ),
             );
         }
         let _ = write!(self.joint.values, "<axis xyz=\"{text}\"/>");
