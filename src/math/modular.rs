@@ -13,7 +13,8 @@ use super::polynomial::Polynomial;
 pub(super) type Image = Vec<u64>;
 
 impl Polynomial {
-    /// Returns the greatest common divisor, primitive with positive leading coefficient; 0 only for two zeros.
+    /// Returns the greatest common divisor of two polynomials, primitive with positive leading coefficient; 0 only for
+    /// two zeros.
     pub fn gcd(&self, other: &Self) -> Self {
         if self.is_zero() {
             return other.normalised();

@@ -50,12 +50,12 @@ impl Polynomial {
         Self::from_ascending(integers).primitive_part()
     }
 
-    /// Returns the constant polynomial.
+    /// Returns the constant polynomial of this value.
     pub fn constant(value: impl Into<BigInt>) -> Self {
         Self::from_ascending([value.into()])
     }
 
-    /// Returns z^power.
+    /// Returns the polynomial z^power.
     pub fn power(power: usize) -> Self {
         let mut ascending = vec![BigInt::zero(); power];
         ascending.push(BigInt::one());
@@ -87,13 +87,13 @@ impl Polynomial {
         self.ascending.get(power).cloned().unwrap_or_default()
     }
 
-    /// Returns the value at an exact point.
+    /// Returns the value p(point) at an exact point.
     pub fn value_at(&self, point: &Rational) -> Rational {
         let scale = point.denom().pow(self.degree() as u32);
         Rational::new(self.scaled_value_at(point), scale)
     }
 
-    /// Returns the sign of the value at an exact point: -1, 0 or 1.
+    /// Returns the sign of the value p(point) at an exact point: -1, 0 or 1.
     pub fn sign_at(&self, point: &Rational) -> i32 {
         match self.scaled_value_at(point).sign() {
             Sign::Minus => -1,
@@ -140,7 +140,7 @@ impl Polynomial {
         if primitive.leading().is_negative() { -primitive } else { primitive }
     }
 
-    /// Returns the derivative.
+    /// Returns the derivative p'(z).
     pub fn derivative(&self) -> Self {
         Self::from_ascending(self.ascending.iter().enumerate().skip(1).map(|(k, c)| c * BigInt::from(k)))
     }

@@ -3,7 +3,7 @@
 use super::polynomial::Polynomial;
 
 impl Polynomial {
-    /// Returns whether no root is repeated.
+    /// Returns whether no root of the polynomial is repeated.
     pub fn is_square_free(&self) -> bool {
         self.gcd(&self.derivative()).degree() == 0
     }

@@ -7,7 +7,8 @@ use std::path::Path;
 use super::{DhTable, MAX_BYTES, ReadError, Robot, UrdfOptions};
 
 impl Robot {
-    /// As [`Robot::from_urdf_bytes`], from a file; a robot without a name is called after the file.
+    /// Returns the robot in a URDF file, read as [`Robot::from_urdf_bytes`] reads its bytes; a robot without a name is
+    /// called after the file.
     ///
     /// # Errors
     /// [`ReadError::File`] when the file can not be read, [`ReadError::Urdf`] as [`Robot::from_urdf`].

@@ -28,7 +28,8 @@ pub struct ChainScratch {
     tip: Frame<f64>,
 }
 
-/// A chain whose kinematics have been run: the proof is that you hold it.
+/// A chain whose kinematics have been run, as [`Chain::forward`] returns it: whoever holds one may ask for pose and
+/// Jacobian.
 #[derive(Debug, Clone, Copy)]
 pub struct Posed<'a> {
     chain: &'a Chain,
@@ -241,7 +242,7 @@ impl Posed<'_> {
         self.scratch.tip.p.into()
     }
 
-    /// Returns the number of columns: [`Chain::dof`].
+    /// Returns the number of columns of the Jacobian: [`Chain::dof`].
     pub fn dof(&self) -> usize {
         self.chain.dof()
     }

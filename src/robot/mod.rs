@@ -2,8 +2,10 @@
 //!
 //! [`Robot::from_urdf`] gives a robot and its [`Diagnostic`]s; a defective joint spoils only the chains that
 //! pass through it. [`Robot::from_dh`] makes one of a Denavit-Hartenberg table. [`Robot::with_calibration`],
-//! [`Robot::with_locked`] and [`Robot::with_tool`] give changed copies, [`Robot::to_urdf`] writes any of them down. [`Robot::chain`] gives the path between any two links, in either direction, and
-//! [`Chain::forward`] its kinematics.
+//! [`Robot::with_locked`] and [`Robot::with_tool`] give changed copies, [`Robot::to_urdf`] writes any of them down.
+//! [`Robot::chain`] gives the path between any two links, in either direction, and [`Chain::forward`] its kinematics.
+//!
+//! [`Robot`] itself knows none of these: each is a file with an `impl Robot` of its own.
 
 mod calibration;
 mod chain;

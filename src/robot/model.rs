@@ -27,7 +27,7 @@ pub enum JointKind {
 }
 
 impl JointKind {
-    /// Every kind, in the order of the URDF standard.
+    /// Every kind of joint, in the order of the URDF standard.
     pub const ALL: [JointKind; 7] = [
         JointKind::Revolute,
         JointKind::Continuous,
@@ -38,7 +38,7 @@ impl JointKind {
         JointKind::Spherical,
     ];
 
-    /// The word that URDF uses for it.
+    /// Returns the word that URDF uses for the kind of joint.
     pub fn as_str(self) -> &'static str {
         match self {
             JointKind::Revolute => "revolute",
@@ -73,7 +73,7 @@ impl fmt::Display for JointKind {
     }
 }
 
-/// The range and speed a joint allows. What the file does not say is infinite: unknown, and not checked.
+/// The range and the speed that a joint allows. What the file does not say is infinite: unknown, and not checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Smallest position \[rad\] or \[m\].
@@ -85,7 +85,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// No limit known.
+    /// The limits of a joint of which none is known: all infinite.
     pub const UNLIMITED: Limits =
         Limits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: f64::INFINITY };
 
@@ -95,7 +95,7 @@ impl Limits {
     }
 }
 
-/// A joint that follows another: `position = multiplier * driver + offset`.
+/// How a joint follows another: `position = multiplier * driver + offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mimic {
     /// Index of the joint that is followed; never a mimic joint itself, because mimic chains are folded.
@@ -124,9 +124,9 @@ impl Mimic {
 pub struct Defect {
     /// The reason, as a sentence.
     pub reason: String,
-    /// Line, counted from 1.
+    /// Line of the defect in the file, counted from 1.
     pub line: usize,
-    /// Column, counted from 1.
+    /// Column of the defect in the file, counted from 1.
     pub column: usize,
 }
 
@@ -136,9 +136,9 @@ pub struct Defect {
 pub struct Link {
     /// The link's name, unique in the robot.
     pub name: String,
-    /// Index of the joint above it; `None` for a root.
+    /// Index of the joint above the link; `None` for a root.
     pub parent_joint: Option<usize>,
-    /// Set when no chain may pass through the link.
+    /// What is wrong with the link; where something is, no chain can pass through it.
     pub defect: Option<Defect>,
 }
 
@@ -148,11 +148,11 @@ pub struct Link {
 pub struct Joint {
     /// The joint's name.
     pub name: String,
-    /// How it moves.
+    /// How the joint moves.
     pub kind: JointKind,
-    /// Index of the link above.
+    /// Index of the link above the joint.
     pub parent: usize,
-    /// Index of the link below; always greater than `parent`.
+    /// Index of the link below the joint; always greater than `parent`.
     pub child: usize,
     /// Pose of the child's frame in the parent's at joint position zero.
     pub origin: IsometryMatrix3<f64>,
@@ -160,12 +160,12 @@ pub struct Joint {
     pub axis: Vector3<f64>,
     /// The joint's own limits (of a mimic joint too).
     pub limits: Limits,
-    /// Set when the joint follows another.
+    /// How the joint follows another; `None` where it moves by itself, or not at all.
     pub mimic: Option<Mimic>,
     /// What the joint follows by its own `<mimic>`: perhaps a joint that follows another one itself. What is done to that
     /// one reaches this one.
     pub(super) follows: Option<Mimic>,
-    /// Set when no chain may pass through the joint.
+    /// What is wrong with the joint; where something is, no chain can pass through it.
     pub defect: Option<Defect>,
     /// Roll, pitch and yaw that `origin` was made from, where they are known: bits that the matrix does not give back.
     pub(super) angles: Option<[f64; 3]>,
@@ -208,42 +208,42 @@ impl Robot {
         Robot { name, links, joints, strays: Vec::new(), link_by_name, diagnostics: Vec::new() }
     }
 
-    /// The robot's name.
+    /// Returns the robot's name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// All links, every parent before its children, children in the order of the file.
+    /// Returns all links, every parent before its children, children in the order of the file.
     pub fn links(&self) -> &[Link] {
         &self.links
     }
 
-    /// The joints of the tree, in the order of their child links.
+    /// Returns the joints of the tree, in the order of their child links.
     pub fn joints(&self) -> &[Joint] {
         &self.joints
     }
 
-    /// Everything that was found in the file, by place.
+    /// Returns everything that was found in the robot's file, by place.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
     }
 
-    /// The link of that name.
+    /// Returns the link of that name.
     pub fn link(&self, name: &str) -> Option<&Link> {
         self.link_by_name.get(name).map(|&index| &self.links[index])
     }
 
-    /// The joint of that name.
+    /// Returns the joint of that name.
     pub fn joint(&self, name: &str) -> Option<&Joint> {
         self.joints.iter().find(|joint| joint.name == name)
     }
 
-    /// The links that hang from no joint.
+    /// Returns the links that hang from no joint.
     pub fn roots(&self) -> impl Iterator<Item = &Link> {
         self.links.iter().filter(|link| link.parent_joint.is_none())
     }
 
-    /// The links from which no joint hangs: the usual tips.
+    /// Returns the links from which no joint hangs: the usual tips.
     pub fn leaves(&self) -> impl Iterator<Item = &Link> {
         let mut has_child = vec![false; self.links.len()];
         for joint in &self.joints {

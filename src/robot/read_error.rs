@@ -16,27 +16,27 @@ pub enum ReadError {
     /// The file can not be read.
     #[error("can not read {}: {}{}", shown(.path), plain(.source), hint(.path, .directory.as_deref(), .source))]
     File {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The working directory from which a relative path was looked up.
         directory: Option<PathBuf>,
-        /// What the system says.
+        /// What the operating system says.
         source: io::Error,
     },
     /// The file is read, but no robot can be made of it.
     #[error("{}", placed(.path, .error.diagnostics(), .error))]
     Urdf {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Why no robot can be made of the file.
         error: UrdfError,
     },
     /// The file is read, but its Denavit-Hartenberg table makes no robot.
     #[error("{}", placed(.path, .error.diagnostics(), .error))]
     Dh {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Why no robot can be made of the file.
         error: DhError,
     },
 }
@@ -47,7 +47,7 @@ impl ReadError {
         ReadError::File { path: path.to_owned(), directory, source }
     }
 
-    /// Everything that was found in the file, by place; nothing where it could not be read at all.
+    /// Returns everything that was found in the file, by place; nothing where the file could not be read at all.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         match self {
             ReadError::File { .. } => &[],

@@ -9,7 +9,7 @@ use super::figures::Figures;
 pub struct Found {
     /// The row, which declares nothing; [`CheckedRow::to_toml`] writes it with all its facts.
     pub checked: CheckedRow,
-    /// The figures.
+    /// The exactly decided figures of the row.
     pub figures: Figures,
     /// The merit of the figures (see [`Objective::merit`](super::Objective::merit)).
     pub merit: f64,

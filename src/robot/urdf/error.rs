@@ -25,12 +25,12 @@ impl UrdfError {
         UrdfError::at(1, 1, message)
     }
 
-    /// Everything that was found, by place; at least one has [`Severity::Error`].
+    /// Returns everything that was found in the text, by place; at least one finding has [`Severity::Error`].
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
     }
 
-    /// The first finding of severity error.
+    /// Returns the first finding of severity error.
     pub fn first(&self) -> Option<&Diagnostic> {
         first_error(&self.diagnostics)
     }

@@ -29,7 +29,7 @@ impl Robot {
         read_text(text, &UrdfOptions::default())
     }
 
-    /// As [`Robot::from_urdf`], with options.
+    /// Returns the robot that a URDF text describes, as [`Robot::from_urdf`] does, read as the options say.
     ///
     /// # Errors
     /// As [`Robot::from_urdf`].
@@ -37,7 +37,8 @@ impl Robot {
         read_text(text, options)
     }
 
-    /// As [`Robot::from_urdf_with`], from bytes whose encoding is checked first: UTF-8, with or without a mark.
+    /// Returns the robot that a URDF describes, as [`Robot::from_urdf_with`] does, from bytes whose encoding is checked
+    /// first: UTF-8, with or without a byte order mark.
     ///
     /// # Errors
     /// As [`Robot::from_urdf`]; also when the bytes are not UTF-8 (the message names the encoding).

@@ -16,16 +16,16 @@ pub type Triangle = [[f32; 3]; 3];
 /// Triangles of one colour.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshPart {
-    /// Their colour, where the file gives one.
+    /// Colour of the triangles, where the file gives one.
     pub colour: Option<Colour>,
-    /// The triangles.
+    /// The triangles of this colour.
     pub triangles: Vec<Triangle>,
 }
 
 /// The surface of a body.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// Its parts, none of them empty.
+    /// The parts of the mesh, none of them empty.
     pub parts: Vec<MeshPart>,
 }
 
@@ -35,23 +35,23 @@ pub enum MeshError {
     /// The file can not be read.
     #[error("{} can not be read: {source}", .path.display())]
     File {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
+        /// What the operating system says.
         source: io::Error,
     },
-    /// It is no mesh that is understood.
+    /// The file holds no mesh that is understood.
     #[error("{} is no mesh: {reason}", .path.display())]
     Content {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Why the file gives no mesh.
         reason: String,
     },
 }
 
 impl Mesh {
-    /// Number of triangles.
+    /// Returns the number of triangles of all parts.
     pub fn triangles(&self) -> usize {
         self.parts.iter().map(|part| part.triangles.len()).sum()
     }

@@ -10,33 +10,33 @@ pub type Colour = [f64; 4];
 pub enum Shape {
     /// A box about its middle.
     Box {
-        /// Lengths of its sides \[m\].
+        /// Lengths of the box along its own x, y and z \[m\].
         sides: [f64; 3],
     },
     /// A cylinder along z, about its middle.
     Cylinder {
-        /// \[m\]
+        /// Radius \[m\].
         radius: f64,
-        /// \[m\]
+        /// Length \[m\].
         length: f64,
     },
     /// A cylinder along z with half spheres on its ends.
     Capsule {
-        /// \[m\]
+        /// Radius \[m\].
         radius: f64,
         /// Length of the cylinder \[m\].
         length: f64,
     },
     /// A sphere about its middle.
     Sphere {
-        /// \[m\]
+        /// Radius \[m\].
         radius: f64,
     },
     /// A mesh in a file.
     Mesh {
         /// How the URDF names the file ([`find_mesh`](super::find_mesh)).
         reference: String,
-        /// Factors along its axes.
+        /// Factors along the mesh's own x, y and z.
         scale: [f64; 3],
     },
 }
@@ -48,9 +48,9 @@ pub struct Visual {
     pub link: String,
     /// Pose of the shape in the link.
     pub origin: IsometryMatrix3<f64>,
-    /// What it is.
+    /// The shape itself.
     pub shape: Shape,
-    /// Its colour, where the URDF gives one.
+    /// The shape's colour, where the URDF gives one.
     pub colour: Option<Colour>,
 }
 
@@ -59,6 +59,6 @@ pub struct Visual {
 pub struct Visuals {
     /// The shapes, in the order of the file.
     pub visuals: Vec<Visual>,
-    /// What was left out, and why.
+    /// The shapes that were left out, and why.
     pub notes: Vec<String>,
 }
