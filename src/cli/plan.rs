@@ -7,9 +7,9 @@ use super::arguments::PlanArguments;
 use super::failure::{Exit, Failure};
 use super::output::Output;
 use super::progress::Progress;
-use super::results::{Results, Story};
+use super::results::{PageContext, Results};
 use super::shell::{option, quoted};
-use crate::math::figure;
+use crate::math::number_text;
 use crate::planner::{Plan, PlanStatus, Planner};
 use crate::report::{PlanFormat, PlanJson, PlanText, Suggestion, plan_details, suggestions};
 use crate::scenario::{FormulaRows, Real, Scenario, ScenarioText};
@@ -47,12 +47,12 @@ pub(super) fn run(
     let mut names = Vec::new();
     if let Some(results) = results {
         let again = scenario.relocated(text.folder(), own, results.path())?.to_toml();
-        let story = Story { scenario: &again, title: &title(arguments), suggestions: &next };
-        names = results.write(&mut plan, &story)?;
+        let context = PageContext { scenario: &again, title: &title(arguments), suggestions: &next };
+        names = results.write(&mut plan, &context)?;
     }
     clock.done("writing");
     if output.is_quiet() {
-        for sentence in grave(&plan) {
+        for sentence in important_warnings(&plan) {
             output.remark(&sentence);
         }
     }
@@ -116,12 +116,12 @@ impl std::fmt::Display for Stages {
 }
 
 /// What has to be said of a plan even where nothing else is.
-fn grave(plan: &Plan) -> Vec<String> {
+fn important_warnings(plan: &Plan) -> Vec<String> {
     let stopped = plan.reason.iter().map(|reason| format!("stopped, {}: {reason}", plan.status.name()));
     let crossed = plan.arms.iter().flat_map(|arm| arm.violations.iter().map(move |limit| (arm, limit)));
     let crossed = crossed.map(|(arm, limit)| {
         let (kind, joint) = (limit.kind.name(), &limit.joint);
-        format!("warning: {} crosses the {kind} limit of {joint} at {} s", arm.name, figure(limit.t))
+        format!("warning: {} crosses the {kind} limit of {joint} at {} s", arm.name, number_text(limit.t))
     });
     let warnings = plan.warnings.iter().map(|warning| format!("warning: {warning}"));
     stopped.chain(crossed).chain(warnings).collect()

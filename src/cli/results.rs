@@ -28,7 +28,7 @@ pub(super) struct Results<'a> {
 }
 
 /// What is told of a plan beside the plan itself.
-pub(super) struct Story<'a> {
+pub(super) struct PageContext<'a> {
     /// The scenario as it was run.
     pub(super) scenario: &'a str,
     /// What the page is called.
@@ -58,17 +58,21 @@ impl<'a> Results<'a> {
 
     /// Writes what was planned and returns the names of the files. Of a run that stopped all is written that can be, with the
     /// reasons for what can not among the plan's warnings.
-    pub(super) fn write(mut self, plan: &mut Plan, story: &Story<'_>) -> Result<Vec<String>, Failure> {
+    pub(super) fn write(
+        mut self,
+        plan: &mut Plan,
+        context: &PageContext<'_>,
+    ) -> Result<Vec<String>, Failure> {
         let folder = self.folder.interruptible(formats::interruption());
-        let trajectory = Trajectory::of(plan, Some(About::of(plan, story.scenario, self.stage)));
+        let trajectory = Trajectory::of(plan, Some(About::of(plan, context.scenario, self.stage)));
         let recording = Recording { trajectory: &trajectory, stage: self.stage };
         if !plan.is_completed() {
             plan.warnings.extend(self.exports.keep_possible(recording));
         }
         self.exports.write(&folder, recording)?;
         folder.write("plan.json", |out| PlanJson.write(plan, out))?;
-        folder.write("scenario.toml", |out| out.write_all(story.scenario.as_bytes()))?;
-        look(self.arguments, &folder, plan, recording, story)?;
+        folder.write("scenario.toml", |out| out.write_all(context.scenario.as_bytes()))?;
+        look(self.arguments, &folder, plan, recording, context)?;
         Ok(names(self.arguments, &self.exports).map(str::to_owned).collect())
     }
 }
@@ -85,7 +89,7 @@ fn look(
     folder: &Folder,
     plan: &Plan,
     recording: Recording<'_>,
-    story: &Story<'_>,
+    context: &PageContext<'_>,
 ) -> Result<(), Failure> {
     if !arguments.figures && arguments.no_report {
         return Ok(());
@@ -99,13 +103,13 @@ fn look(
         return Ok(());
     }
     let page = PlanPage {
-        title: story.title,
+        title: context.title,
         plan,
         recording,
         figures: &figures,
-        scenario: story.scenario,
+        scenario: context.scenario,
         command: "kinstep plan scenario.toml",
-        suggestions: story.suggestions,
+        suggestions: context.suggestions,
     };
     folder.write(PAGE, |out| page.write(out))
 }

@@ -237,8 +237,8 @@ fn check(file: &RobotFile, output: &mut Output) -> Result<Exit, Failure> {
     let ok = found.iter().all(|problem| problem.severity != Severity::Error);
     let problems = found.iter().map(Problem::from).collect();
     if output.is_quiet() {
-        let grave = found.iter().filter(|problem| problem.severity != Severity::Note);
-        grave.for_each(|problem| output.remark(&format!("{}:{problem}", printable(&source.label()))));
+        let important = found.iter().filter(|problem| problem.severity != Severity::Note);
+        important.for_each(|problem| output.remark(&format!("{}:{problem}", printable(&source.label()))));
     }
     output.show(&CheckResult { ok, problems, joints, links, label: source.label() })?;
     Ok(if ok { Exit::Done } else { Exit::Robot })

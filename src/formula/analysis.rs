@@ -99,12 +99,12 @@ impl Analysis {
         self.feedback_order
     }
 
-    /// Returns E_q of (alpha, beta): zero for q = 0 and 1 in a consistent row.
+    /// Returns the order defect E_q of (alpha, beta): zero for q = 0 and 1 in a consistent row.
     pub fn order_defect(&self, q: usize) -> Rational {
         order_defect(&self.weights.alpha, &self.weights.beta, q)
     }
 
-    /// Returns the sum of gamma: h = sigma k times it.
+    /// Returns the sum of gamma, which scales the feedback step: h = sigma k gamma(1).
     pub fn gamma_sum(&self) -> Rational {
         self.weights.gamma.iter().sum()
     }
@@ -129,7 +129,7 @@ impl Analysis {
         self.root_condition != RootCondition::Unstable
     }
 
-    /// Returns whether, moreover, z = 1 is the only root on the circle.
+    /// Returns whether all roots of rho are inside the unit circle but for a simple one at z = 1.
     pub fn is_strictly_zero_stable(&self) -> bool {
         self.root_condition == RootCondition::StrictlyStable
     }
@@ -144,25 +144,25 @@ impl Analysis {
         self.closed_loop.is_some()
     }
 
-    /// Returns the feedback range, exact; `None` for a row without a closed loop.
+    /// Returns the feedback range (0, h_max), exact; `None` for a row without a closed loop.
     pub fn feedback_range(&self) -> Option<&FeedbackRange> {
         self.range.get_or_init(|| self.closed_loop.as_ref().map(FeedbackRange::of)).as_ref()
     }
 
-    /// Returns the best feedback step inside the range, `None` where there is none.
+    /// Returns the feedback step of least spectral radius inside the feedback range, `None` where there is none.
     pub fn optimum(&self) -> Option<Optimum> {
         *self.optimum.get_or_init(|| optimum(self.closed_loop.as_ref()?, self.feedback_range()?))
     }
 
     /// Returns h_opt and r_opt^2 as algebraic numbers, found by elimination; `None` without an optimum or where the
-    /// elimination is out of reach (long rows). Not kept: ask once.
+    /// elimination is out of reach (long rows). Computed anew at every call.
     pub fn closed_form(&self) -> Option<ClosedForm> {
         closed_form(self.closed_loop.as_ref()?, self.feedback_range()?, self.optimum()?)
     }
 
-    /// Returns a radius, a billionth part below that of the optimum, proved to be above none of the range: no h does better.
+    /// Returns a radius, a billionth part below that of the optimum, which provably no h of the feedback range reaches.
     ///
-    /// `None` without an optimum and for rows of more than 16 steps. Not kept: ask once.
+    /// `None` without an optimum and for rows of more than 16 steps. Computed anew at every call.
     pub fn radius_bound(&self) -> Option<f64> {
         const MARGIN: f64 = 1e-9;
         const MOST_STEPS: usize = 16;
@@ -189,7 +189,7 @@ impl Analysis {
         self.closed_loop.as_ref().map_or(f64::NAN, |closed_loop| spectral_radius(closed_loop, h))
     }
 
-    /// Returns the noise gains at h, `None` where the loop is not strictly stable.
+    /// Returns the noise gains of the closed loop at h, `None` where the loop is not strictly stable.
     pub fn noise_gain(&self, h: f64) -> Option<NoiseGain> {
         noise_gain(&self.weights, self.closed_loop.as_ref()?, h)
     }

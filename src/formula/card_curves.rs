@@ -15,20 +15,20 @@ use super::analysis::Analysis;
 pub struct FrequencyResponse {
     /// Angular frequency in [0, pi] [rad per step].
     pub omega: f64,
-    /// From noise in the measured residual to the residual.
+    /// Amplification from noise in the measured residual to the residual.
     pub residual: f64,
-    /// From noise in the feedforward velocity, per unit of sigma.
+    /// Amplification from noise in the feedforward velocity to the residual, per unit of sigma.
     pub feedforward_per_sigma: f64,
-    /// From noise in the joint states of the history.
+    /// Amplification from noise in the joint states of the history to the residual.
     pub state: f64,
 }
 
 /// Where x' = lambda x is integrated stably by (alpha, beta), sampled over a window of mu = sigma lambda.
 #[derive(Debug, Clone)]
 pub struct StabilityRegion {
-    /// Least and largest real part.
+    /// Least and largest real part of mu in the window.
     pub real: (f64, f64),
-    /// Least and largest imaginary part.
+    /// Least and largest imaginary part of mu in the window.
     pub imaginary: (f64, f64),
     /// Rows from the least imaginary part up: whether the middle of each cell is strictly stable.
     pub stable: Vec<Vec<bool>>,
@@ -36,12 +36,12 @@ pub struct StabilityRegion {
     pub boundary: Vec<Complex<f64>>,
 }
 
-/// The roots of the closed loop as h grows.
+/// The roots of the closed loop pi_h as h grows.
 #[derive(Debug, Clone, Default)]
 pub struct RootLocus {
-    /// The feedback steps.
+    /// The feedback steps at which the roots are given.
     pub h: Vec<f64>,
-    /// One list per root, an entry per feedback step.
+    /// One list per root, with an entry per feedback step.
     pub branches: Vec<Vec<Complex<f64>>>,
 }
 

@@ -9,7 +9,7 @@ use super::error::{Contradiction, Defect, DefectKind, Place};
 use super::formula::Formula;
 use super::row::{Places, Row};
 
-/// A row beside what its numbers say.
+/// A row with what its numbers say, and what contradicts it there.
 #[derive(Debug, Clone)]
 pub struct CheckedRow {
     row: Row,
@@ -32,7 +32,7 @@ impl CheckedRow {
         &self.row
     }
 
-    /// Returns what the numbers say.
+    /// Returns what the row's numbers say.
     pub fn analysis(&self) -> &Analysis {
         &self.analysis
     }
@@ -42,7 +42,7 @@ impl CheckedRow {
         &self.contradictions
     }
 
-    /// Returns the formula.
+    /// Returns the formula that the row is, where nothing contradicts it.
     ///
     /// # Errors
     /// The contradictions, as defects at the place of the row.

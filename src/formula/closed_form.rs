@@ -18,7 +18,7 @@ use super::radius::{Optimum, deadbeat};
 /// What makes the spectral radius least.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
-    /// Every root that moves is zero.
+    /// Every root that depends on h is zero.
     Deadbeat,
     /// Two real roots meet.
     DoubleRoot,
@@ -51,11 +51,12 @@ impl Cause {
 /// The numbers are roots of exact resultants; which root it is was decided by agreement with the numeric optimum to nine digits.
 #[derive(Debug, Clone)]
 pub struct ClosedForm {
-    /// h_opt.
+    /// The feedback step h_opt.
     pub h: AlgebraicNumber,
-    /// r_opt^2; `None` where a root that no h moves is the largest, or it was out of reach.
+    /// The squared spectral radius r_opt^2; `None` where the largest root does not depend on h, or the elimination was
+    /// out of reach.
     pub radius_squared: Option<AlgebraicNumber>,
-    /// What happens at h_opt.
+    /// What makes the spectral radius least at h_opt.
     pub cause: Cause,
 }
 

@@ -9,7 +9,8 @@ use crate::math::{Rational, parse_rational, rational_to_f64};
 
 const BUILTIN: &str = include_str!("derivative_rules.toml");
 
-/// x'(t_n) ~ (1/sigma) sum_j a_j x_(n-j): samples up to the present one, newest first.
+/// A rule for the derivative of a sampled signal: x'(t_n) ~ (1/sigma) sum_j a_j x_(n-j), from samples up to the present
+/// one, newest first.
 ///
 /// ```
 /// use kinstep::formula::DerivativeRule;
@@ -72,12 +73,12 @@ impl DerivativeRule {
         Some(Self { id, name, source, weights, order, error_constant })
     }
 
-    /// Returns the id.
+    /// Returns the id of the rule.
     pub fn id(&self) -> &str {
         &self.id
     }
 
-    /// Returns the name for people.
+    /// Returns the name of the rule for people.
     pub fn name(&self) -> &str {
         &self.name
     }

@@ -9,9 +9,9 @@ use super::limits::{MAX_ROW_DIGITS, MAX_STEPS};
 /// A position in a file, both counted from 1; 0 and 0 where there is no file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct Place {
-    /// The line.
+    /// The line, counted from 1; 0 where there is no file.
     pub line: usize,
-    /// The column, in characters.
+    /// The column in characters, counted from 1; 0 where there is no file.
     pub column: usize,
 }
 
@@ -24,7 +24,7 @@ impl Place {
     }
 }
 
-/// Why a row can not be read, or, as [`DefectKind::Contradicted`], why it can be read but not be believed.
+/// Why a row can not be read, or, as [`DefectKind::Contradicted`], what contradicts a row that can be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DefectKind {
@@ -44,7 +44,7 @@ pub enum DefectKind {
         key: String,
         /// The known key closest to it, if one is close.
         nearest: Option<String>,
-        /// What the key stands in.
+        /// The kind of table that the key stands in.
         place: &'static str,
         /// All known keys.
         known: String,
@@ -52,9 +52,9 @@ pub enum DefectKind {
     /// A key that every row must have.
     #[error("\"{key}\" is missing; {remedy}")]
     MissingKey {
-        /// The key.
+        /// The key that is missing.
         key: &'static str,
-        /// What to write.
+        /// What to write to mend it.
         remedy: &'static str,
     },
     /// A value of the wrong type.
@@ -82,7 +82,7 @@ pub enum DefectKind {
     Number {
         /// The key, with the index of the entry where it is a list.
         key: String,
-        /// What is wrong with it.
+        /// What is wrong with the number.
         error: ParseRationalError,
     },
     /// Both spellings of the coefficients, or parts of both.
@@ -91,9 +91,9 @@ pub enum DefectKind {
          \"denominator\", or \"alpha\" with \"beta\" and, if feedback has its own weights, \"gamma\""
     )]
     TwoSpellings {
-        /// A key of the one spelling.
+        /// A key of one spelling.
         first: &'static str,
-        /// A key of the other.
+        /// A key of the other spelling.
         second: &'static str,
     },
     /// Lists of different lengths.
@@ -114,12 +114,12 @@ pub enum DefectKind {
         "\"{key}\" has the length {found}; the shortest formula has two coefficients, for the new state and the one before"
     )]
     TooFewCoefficients {
-        /// The list.
+        /// The key of the list.
         key: String,
-        /// Its length.
+        /// The length of the list.
         found: usize,
     },
-    /// More steps than anything here handles.
+    /// More than [`MAX_STEPS`] steps.
     #[error("a formula of {steps} steps is too long; up to {MAX_STEPS} steps are handled")]
     TooManySteps {
         /// The steps of the row.
@@ -131,9 +131,9 @@ pub enum DefectKind {
          are handled"
     )]
     TooLong {
-        /// The list.
+        /// The key of the list.
         key: String,
-        /// About how many digits.
+        /// About how many digits the numbers have together.
         digits: usize,
     },
     /// The new state is not in the formula.
@@ -142,7 +142,7 @@ pub enum DefectKind {
          coefficients are written newest sample first"
     )]
     ZeroLeadingCoefficient {
-        /// The list.
+        /// The key of the list.
         key: String,
     },
     /// `denominator = 0`.
@@ -151,21 +151,21 @@ pub enum DefectKind {
     /// An order below 1, or no count.
     #[error("\"order\" must be a whole number of at least 1, but this is {text}")]
     ImpossibleOrder {
-        /// As written.
+        /// The order as written.
         text: String,
     },
     /// An id that can not be typed on a command line.
     #[error("the id \"{id}\" is not usable; an id has one or more letters, digits and any of - _ . +")]
     UnusableId {
-        /// As written.
+        /// The id as written.
         id: String,
     },
     /// Two rows of one id.
     #[error("the id \"{id}\" is taken by the row at line {first_line}; every row needs an id of its own")]
     DuplicateId {
-        /// The id.
+        /// The id that two rows have.
         id: String,
-        /// Where it was first used.
+        /// The line on which the id was first used.
         first_line: usize,
     },
     /// A row with the id of a row in another table.
@@ -173,9 +173,9 @@ pub enum DefectKind {
         "the id \"{id}\" is taken by the row \"{name}\" of the table that this one extends; give the new row another id"
     )]
     CollidingId {
-        /// The id.
+        /// The id that both rows have.
         id: String,
-        /// The name of the row that has it.
+        /// The name of the row that has the id already.
         name: String,
     },
     /// The row can be read, but its numbers say otherwise.
@@ -200,7 +200,7 @@ pub enum Contradiction {
          must sum to 0, so it does not even hold a constant"
     )]
     WeightsDoNotSumToZero {
-        /// E_0.
+        /// The order defect E_0 = rho(1), for a leading coefficient of 1.
         residual: Rational,
     },
     /// The first moment of alpha differs from beta(1).
@@ -211,25 +211,25 @@ pub enum Contradiction {
     FirstMomentDiffers {
         /// sum_j alpha_j (1 - j), for a leading coefficient of 1.
         moment: Rational,
-        /// beta(1), likewise.
+        /// beta(1), for a leading coefficient of 1.
         weight: Rational,
     },
-    /// beta(1) = 0.
+    /// beta(1) = 0: the formula integrates nothing.
     #[error(
         "the row is inconsistent: its weights of f sum to 0, so nothing is integrated (z = 1 is a repeated root)"
     )]
     NothingIntegrated,
-    /// gamma(1) = 0.
+    /// gamma(1) = 0: feedback has no effect.
     #[error(
         "the weights of the feedback, gamma, sum to 0, so no gain gives a feedback step h; they must not cancel"
     )]
     NoFeedback,
-    /// The order is another.
+    /// The order is another than the row declares.
     #[error("the row declares order {declared}, but its coefficients give order {computed}")]
     Order {
-        /// As declared.
+        /// The order that the row declares.
         declared: usize,
-        /// As computed.
+        /// The order of the coefficients.
         computed: usize,
     },
     /// The declared order is beyond what any zero-stable formula reaches.
@@ -238,33 +238,33 @@ pub enum Contradiction {
          of {steps} steps has an order above {barrier} (Dahlquist's first barrier)"
     )]
     BeyondDahlquistBarrier {
-        /// As declared.
+        /// The order that the row declares.
         declared: usize,
         /// The steps of the row.
         steps: usize,
-        /// explicit or implicit.
+        /// `explicit` or `implicit`.
         kind: &'static str,
-        /// The highest order.
+        /// The highest order of a zero-stable formula of these steps and this kind.
         barrier: usize,
     },
-    /// The error constant is another.
+    /// The error constant is another than the row declares.
     #[error("the row declares the error constant {declared}, but its coefficients give {computed}")]
     ErrorConstant {
-        /// As declared.
+        /// The error constant that the row declares.
         declared: Rational,
-        /// As computed.
+        /// The error constant of the coefficients.
         computed: Rational,
     },
-    /// The root condition says otherwise.
+    /// The row declares another zero-stability than the root condition gives.
     #[error(
         "the row declares zero_stable = {declared}, but {}; the largest roots have the moduli {}",
         verdict(*computed),
         moduli_text(moduli)
     )]
     ZeroStability {
-        /// As declared.
+        /// Whether the row declares that it is zero-stable.
         declared: bool,
-        /// As decided exactly.
+        /// The verdict of the root condition, decided exactly.
         computed: RootCondition,
         /// The largest moduli of the roots, as their decimal digits.
         moduli: Vec<String>,
@@ -372,36 +372,36 @@ fn suggestions(nearest: &[String]) -> String {
     }
 }
 
-/// Why a formula, honestly described, may still not be run.
+/// Why a formula that is what its row declares can still not be run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotRunnable {
-    /// It is not zero-stable.
+    /// The formula is not zero-stable.
     #[error(
         "the formula \"{id}\" is not zero-stable (the largest root has the modulus {modulus:.6}): errors grow with every \
          step, whatever the step size; it is in the table as a specimen"
     )]
     Unstable {
-        /// The formula.
+        /// The id of the formula.
         id: String,
         /// The largest modulus of a root.
         modulus: f64,
     },
-    /// It needs f at the new state.
+    /// The formula is implicit: it needs f at the new state.
     #[error(
         "the formula \"{id}\" is implicit: it needs the velocity at the new state, which is not solved for yet; choose an explicit one"
     )]
     Implicit {
-        /// The formula.
+        /// The id of the formula.
         id: String,
     },
-    /// It has a parasitic root on the circle, and feedback pushes that outside.
+    /// The formula has a parasitic root on the unit circle, which feedback pushes outside.
     #[error(
         "the formula \"{id}\" is only weakly stable (a second root on the unit circle) and has no feedback step h for which \
          the closed loop is stable; choose a strictly zero-stable one"
     )]
     WeaklyStable {
-        /// The formula.
+        /// The id of the formula.
         id: String,
     },
 }

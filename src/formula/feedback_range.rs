@@ -147,12 +147,12 @@ impl FeedbackRange {
         Self { end }
     }
 
-    /// Returns whether no h is stable.
+    /// Returns whether the loop is stable at no h.
     pub fn is_empty(&self) -> bool {
         matches!(self.end, End::Empty)
     }
 
-    /// Returns whether every positive h is stable.
+    /// Returns whether the loop is stable at every positive h.
     pub fn is_unbounded(&self) -> bool {
         matches!(self.end, End::Unbounded)
     }
@@ -167,7 +167,7 @@ impl FeedbackRange {
     }
 
     /// Returns an irrational h_max as an algebraic number: a surd, or a root of a polynomial that
-    /// [`AlgebraicNumber::is_minimal`] may prove irreducible. Not kept: ask once.
+    /// [`AlgebraicNumber::is_minimal`] may prove irreducible. Computed anew at every call.
     pub fn irrational(&self) -> Option<AlgebraicNumber> {
         match &self.end {
             End::Algebraic(root) => Some(AlgebraicNumber::of_root(root.clone())),

@@ -140,12 +140,12 @@ impl Formula {
         self.analysis.root_condition()
     }
 
-    /// Returns whether the root condition holds.
+    /// Returns whether the root condition holds: all roots of rho in the closed unit disc, those on the circle simple.
     pub fn is_zero_stable(&self) -> bool {
         self.analysis.is_zero_stable()
     }
 
-    /// Returns whether, moreover, z = 1 is the only root on the circle.
+    /// Returns whether all roots of rho are inside the unit circle but for a simple one at z = 1.
     pub fn is_strictly_zero_stable(&self) -> bool {
         self.analysis.is_strictly_zero_stable()
     }

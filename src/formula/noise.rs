@@ -14,12 +14,12 @@ use super::weights::Weights;
 pub struct NoiseGain {
     /// The feedback step that the gains belong to.
     pub h: f64,
-    /// From noise in the measured residual: input -h gamma(z)/gamma(1) times the noise.
+    /// The gain from noise in the measured residual: input -h gamma(z)/gamma(1) times the noise.
     pub residual: f64,
-    /// From noise in the feedforward velocity, per unit of sigma: input beta(z) times the noise.
+    /// The gain from noise in the feedforward velocity, per unit of sigma: input beta(z) times the noise.
     pub feedforward_per_sigma: f64,
-    /// From noise in the joint states of the history (encoders): it enters through alpha_1, alpha_2, ... and, as the
-    /// residual is computed from the same states, through gamma too. Input z^s - pi_h(z) times the noise, with
+    /// The gain from noise in the joint states of the history (encoders): it enters through alpha_1, alpha_2, ... and,
+    /// as the residual is computed from the same states, through gamma too. Input z^s - pi_h(z) times the noise, with
     /// pi_h's own leading coefficient in place of 1 for an implicit row.
     pub state: f64,
 }

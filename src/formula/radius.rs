@@ -12,12 +12,12 @@ use crate::math::{
 
 use super::feedback_range::{ClosedLoop, FeedbackRange};
 
-/// The feedback step at which the closed loop forgets fastest, and how fast that is.
+/// The feedback step at which the spectral radius of the closed loop is least, and that radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Optimum {
     /// h_opt, inside the feedback range.
     pub h: f64,
-    /// The spectral radius there: errors decay like radius^n over n steps.
+    /// The spectral radius at h_opt: errors decay like radius^n over n steps.
     pub radius: f64,
 }
 

@@ -34,11 +34,12 @@ const NOTE: &str = "note";
 pub enum Strictness {
     /// `source`, `order`, `error_constant` and `zero_stable` are required.
     Finished,
-    /// They may be missing: the row is a draft, to be finished by the code.
+    /// `source`, `order`, `error_constant` and `zero_stable` may be missing: the row is a draft, to be finished by the
+    /// code.
     Draft,
 }
 
-/// Returns the rows of a TOML text, in its order.
+/// Returns the rows of a TOML text, in the order of the text.
 ///
 /// # Errors
 /// [`TableError`] with everything that makes the text or a row unreadable, ids used twice included.

@@ -12,11 +12,11 @@ pub struct Merit {
     pub steady: f64,
     /// Steps until a disturbance has fallen to a thousandth: ln 1000 / -ln r_opt, and never below the row's number of steps.
     pub recovery: f64,
-    /// Gain from noise in the feedforward velocity, per unit of sigma.
+    /// Gain from noise in the feedforward velocity to the residual, per unit of sigma.
     pub noise: f64,
-    /// Gain from noise in the measured residual.
+    /// Gain from noise in the measured residual to the residual.
     pub residual_noise: f64,
-    /// h_opt.
+    /// The best feedback step h_opt.
     pub h: f64,
 }
 
@@ -50,9 +50,9 @@ pub struct Recommendation<'t> {
     pub steps: usize,
     /// The order.
     pub order: usize,
-    /// The row.
+    /// The row to use.
     pub formula: &'t Formula,
-    /// Its figures.
+    /// The merit of that row.
     pub merit: Merit,
     /// How many rows of these steps and this order were compared.
     pub compared: usize,

@@ -15,7 +15,7 @@ pub enum Coefficients {
     Difference {
         /// Weights of x_(n+1), x_n, x_(n-1), ... before the division.
         numerators: Vec<Rational>,
-        /// What all of them are divided by.
+        /// What all numerators are divided by.
         denominator: Rational,
     },
     /// sum_j alpha_j x_(n+1-j) = sigma sum_j beta_j f_(n+1-j) + sigma sum_j gamma_j g_(n+1-j).
@@ -32,9 +32,9 @@ pub enum Coefficients {
 /// The facts that a row declares about itself, each checked against the coefficients.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Declared {
-    /// p of (alpha, beta).
+    /// The order p of (alpha, beta).
     pub order: Option<usize>,
-    /// c = E_(p+1)/((p+1)! beta(1)).
+    /// The error constant c = E_(p+1)/((p+1)! beta(1)).
     pub error_constant: Option<Rational>,
     /// Whether the root condition holds.
     pub zero_stable: Option<bool>,

@@ -67,9 +67,9 @@ impl Default for Search {
 pub struct Solution {
     /// Joint positions [rad or m], one per joint of the chain.
     pub q: Vec<f64>,
-    /// The pose of the tip there.
+    /// The pose of the tip at these joint positions.
     pub tip: IsometryMatrix3<f64>,
-    /// The task error there (linear \[m\]; angular \[rad\]).
+    /// The task error at these joint positions (linear \[m\]; angular \[rad\]).
     pub error: Vector6<f64>,
     /// How many starting places were tried.
     pub starts: usize,
@@ -77,7 +77,7 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Whether the tip is at the target, to what the arithmetic allows.
+    /// Returns whether the tip is at the target, as far as the arithmetic allows.
     pub fn is_found(&self) -> bool {
         self.is_found
     }
@@ -99,47 +99,48 @@ impl Solution {
 }
 
 impl Search {
-    /// A search from 100 places within the limits, near their middle.
+    /// Returns a search from 100 places within the limits, near their middle.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The same from at most so many places (at least one).
+    /// Returns the search from at most so many starting places (at least one).
     #[must_use]
     pub fn starts(mut self, starts: usize) -> Self {
         self.starts = starts.max(1);
         self
     }
 
-    /// The same that ends as soon as it has so many solutions to choose from (at least one, 8 unless given).
+    /// Returns the search that ends as soon as it has so many solutions to choose from (at least one, 8 unless given).
     #[must_use]
     pub fn solutions(mut self, solutions: usize) -> Self {
         self.solutions = solutions.max(1);
         self
     }
 
-    /// The same from other places.
+    /// Returns the search from other starting places, which the seed chooses.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
     }
 
-    /// The same near the configuration `q` [rad or m]; unless given, the middle of the limits.
+    /// Returns the search for joint positions near the configuration `q` [rad or m]; unless given, near the middle of
+    /// the limits.
     #[must_use]
     pub fn near(mut self, q: &[f64]) -> Self {
         self.near = Some(q.to_vec());
         self
     }
 
-    /// The same with a joint, by its index in the chain, held at a position [rad or m].
+    /// Returns the search with a joint, by its index in the chain, held at a position [rad or m].
     #[must_use]
     pub fn holding(mut self, joint: usize, position: f64) -> Self {
         self.held.push((joint, position));
         self
     }
 
-    /// The same with all joints free to move beyond their limits: a question about geometry alone.
+    /// Returns the search with all joints free to move beyond their limits: a question about geometry alone.
     #[must_use]
     pub fn beyond_limits(mut self) -> Self {
         self.keeps_limits = false;

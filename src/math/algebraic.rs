@@ -15,13 +15,13 @@ use super::real_roots::RealRoot;
 /// The number (a + b sqrt m)/d in lowest terms: d > 0, b not zero, m > 1 free of small squares.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Surd {
-    /// a.
+    /// The a of (a + b sqrt m)/d.
     pub rational: BigInt,
-    /// b.
+    /// The b of (a + b sqrt m)/d.
     pub coefficient: BigInt,
-    /// m.
+    /// The m of (a + b sqrt m)/d.
     pub radicand: BigInt,
-    /// d.
+    /// The d of (a + b sqrt m)/d.
     pub denominator: BigInt,
 }
 
@@ -32,7 +32,7 @@ pub enum AlgebraicNumber {
     Rational(Rational),
     /// An irrational root of a quadratic.
     Surd(Surd),
-    /// A root of higher degree.
+    /// A root of a polynomial of higher degree.
     Root(RealRoot),
 }
 
@@ -66,7 +66,7 @@ impl AlgebraicNumber {
         Self::Root(least)
     }
 
-    /// Returns the nearest double.
+    /// Returns the double nearest to the number.
     pub fn to_f64(&self) -> f64 {
         match self {
             Self::Rational(value) => rational_to_f64(value),
@@ -93,7 +93,8 @@ impl AlgebraicNumber {
         }
     }
 
-    /// Returns whether that polynomial is proved irreducible, and so the minimal one; `false` leaves it open.
+    /// Returns whether [`polynomial`](Self::polynomial) is proved irreducible, and so the minimal one; `false` leaves
+    /// it open.
     pub fn is_minimal(&self) -> bool {
         match self {
             Self::Rational(_) | Self::Surd(_) => true,
@@ -185,7 +186,7 @@ impl Surd {
         Polynomial::from_ascending([a * a - b * b * m, a * d * BigInt::from(-2), d * d]).normalised()
     }
 
-    /// Returns the nearest double, worked out in integers.
+    /// Returns the double nearest to the surd, worked out in integers.
     pub fn to_f64(&self) -> f64 {
         let bits = 200_u32;
         let root = ((&self.coefficient * &self.coefficient * &self.radicand) << (2 * bits)).sqrt();

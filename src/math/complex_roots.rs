@@ -190,7 +190,7 @@ pub fn complex_roots(polynomial: &Polynomial) -> Vec<nalgebra::Complex<f64>> {
     roots
 }
 
-/// Returns the moduli of the roots, each as often as its multiplicity, largest first.
+/// Returns the moduli of the complex roots of an exact polynomial, each as often as its multiplicity, largest first.
 pub fn root_moduli(polynomial: &Polynomial) -> Vec<f64> {
     complex_roots(polynomial).iter().map(|root| root.re.hypot(root.im)).collect()
 }

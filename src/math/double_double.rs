@@ -51,18 +51,18 @@ impl AddAssign for DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// The ratio of a circle's circumference to its diameter.
+    /// The ratio of a circle's circumference to its diameter, to about 32 digits.
     pub const PI: Self = Self { high: std::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
 
     /// Half the spacing of the numbers around one: 2^-106.
     pub const RESOLUTION: f64 = 1.232_595_164_407_831e-32;
 
-    /// The nearest double.
+    /// Returns the nearest double.
     pub fn to_f64(self) -> f64 {
         self.high
     }
 
-    /// Whether the number is neither infinite nor NaN.
+    /// Returns whether the number is neither infinite nor NaN.
     pub fn is_finite(self) -> bool {
         self.high.is_finite() && self.low.is_finite()
     }

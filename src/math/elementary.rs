@@ -17,7 +17,7 @@ fn number(value: f64) -> DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// The square root; NaN for negative numbers.
+    /// Returns the square root; NaN for negative numbers.
     #[must_use]
     pub fn sqrt(self) -> Self {
         let first = self.to_f64().sqrt();
@@ -29,7 +29,7 @@ impl DoubleDouble {
         first + (self - first * first) / (first + first)
     }
 
-    /// The exponential.
+    /// Returns e to the power of the number.
     #[must_use]
     pub fn exp(self) -> Self {
         const LARGEST: f64 = 709.0;
@@ -51,7 +51,7 @@ impl DoubleDouble {
         (less_one + DoubleDouble::one()) * number(doublings.exp2())
     }
 
-    /// The natural logarithm; NaN for negative numbers.
+    /// Returns the natural logarithm; NaN for negative numbers.
     #[must_use]
     pub fn ln(self) -> Self {
         let first = self.to_f64().ln();
@@ -63,7 +63,7 @@ impl DoubleDouble {
         first + ratio - ratio * ratio * number(0.5)
     }
 
-    /// Sine and cosine of an angle \[rad\]. The digits of angles beyond some thousands are not all right.
+    /// Returns sine and cosine of an angle \[rad\]. Beyond some thousand radians not all digits are right.
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
         let quarters = (self.to_f64() / QUARTER_TURN[0]).round();

@@ -12,9 +12,9 @@ const MAX_DEPTH: usize = 64;
 pub struct ExpressionError {
     /// The expression as it was written.
     pub text: String,
-    /// Where it goes wrong, in characters from 1.
+    /// Where the expression goes wrong, in characters from 1.
     pub column: usize,
-    /// What is wrong there.
+    /// What is wrong at that column.
     pub problem: String,
 }
 

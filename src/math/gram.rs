@@ -4,8 +4,8 @@ use super::lanes::{Kernel, Lane, Lanes, level, with_instructions};
 use fearless_simd::Simd;
 use nalgebra::Vector6;
 
-/// The Cholesky factorisation without square roots, `G = L D L^T` (L unit lower triangular, D diagonal), of the Gram matrix `G = J J^T` of the first `M`
-/// rows of `J`.
+/// The Cholesky factorisation without square roots, `G = L D L^T` (L unit lower triangular, D diagonal), of the Gram
+/// matrix `G = J J^T` of the first `M` rows of `J`.
 #[derive(Clone, Copy, Debug)]
 pub struct GramCholesky<const M: usize> {
     /// `L` below the diagonal.
@@ -17,7 +17,7 @@ pub struct GramCholesky<const M: usize> {
 }
 
 impl<const M: usize> GramCholesky<M> {
-    /// Factorises `J J^T` for `J` given by its columns, of which the first `M` entries count.
+    /// Returns the factorisation of `J J^T` for `J` given by its columns, of which the first `M` entries count.
     ///
     /// `None` when a pivot is not positive: the rows are dependent to working precision, or not finite.
     #[inline]
@@ -25,13 +25,13 @@ impl<const M: usize> GramCholesky<M> {
         with_instructions(level(), Factorise(columns))
     }
 
-    /// The `y` with `J J^T y = v`.
+    /// Returns the `y` with `J J^T y = v`.
     #[inline]
     pub fn solve(&self, v: &[f64; M]) -> [f64; M] {
         with_instructions(level(), Solve(self, v))
     }
 
-    /// A lower bound of the smallest singular value of `J`, at most a factor `sqrt(M)` below it:
+    /// Returns a lower bound of the smallest singular value of `J`, at most a factor `sqrt(M)` below it:
     /// `1 / sqrt(trace(G^-1))`.
     #[inline]
     pub fn smallest_singular_value_bound(&self) -> f64 {

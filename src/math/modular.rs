@@ -12,8 +12,22 @@ use super::polynomial::Polynomial;
 /// A polynomial modulo a prime, lowest power first, no zero at the end.
 pub(super) type Image = Vec<u64>;
 
+impl Polynomial {
+    /// Returns the greatest common divisor of two polynomials, primitive with positive leading coefficient; 0 only for
+    /// two zeros.
+    pub fn gcd(&self, other: &Self) -> Self {
+        if self.is_zero() {
+            return other.normalised();
+        }
+        if other.is_zero() {
+            return self.normalised();
+        }
+        gcd_of_primitive(&self.primitive_part(), &other.primitive_part())
+    }
+}
+
 /// Returns the greatest common divisor of two primitive, nonzero polynomials, primitive with positive leading coefficient.
-pub(crate) fn gcd(a: &Polynomial, b: &Polynomial) -> Polynomial {
+fn gcd_of_primitive(a: &Polynomial, b: &Polynomial) -> Polynomial {
     let leading_gcd = a.leading().gcd(&b.leading());
     let mut joined: Option<(Vec<BigInt>, BigInt)> = None;
     let mut degree = a.degree().min(b.degree()) + 1;
@@ -167,8 +181,13 @@ fn symmetric(value: &BigInt, modulus: &BigInt) -> BigInt {
 #[cfg(test)]
 mod tests {
     use num_traits::One;
+    use proptest::prelude::*;
 
     use super::*;
+
+    fn small() -> impl Strategy<Value = Polynomial> {
+        proptest::collection::vec(-9_i64..=9, 1..5).prop_map(Polynomial::from_ascending)
+    }
 
     #[test]
     fn knows_primes() {
@@ -185,5 +204,16 @@ mod tests {
         let a = &common * &Polynomial::from_descending(&[1, -1]);
         let b = &common * &Polynomial::from_ascending([huge, BigInt::from(5)]);
         assert_eq!(a.gcd(&b), common.normalised());
+    }
+
+    proptest! {
+        #[test]
+        fn the_gcd_contains_a_common_factor_and_divides_both(a in small(), b in small(), common in small()) {
+            prop_assume!(!a.is_zero() && !b.is_zero() && !common.is_zero());
+            let (left, right) = (&a * &common, &b * &common);
+            let gcd = left.gcd(&right);
+            prop_assert!(gcd.exact_quotient(&common.normalised()).is_some());
+            prop_assert!(left.exact_quotient(&gcd).is_some() && right.exact_quotient(&gcd).is_some());
+        }
     }
 }

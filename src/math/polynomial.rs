@@ -10,7 +10,6 @@ use num_bigint::{BigInt, Sign};
 use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 
-use super::modular;
 use super::rational::{Rational, common_denominator};
 
 /// A polynomial sum of c_k z^k with exact integer coefficients.
@@ -51,12 +50,12 @@ impl Polynomial {
         Self::from_ascending(integers).primitive_part()
     }
 
-    /// Returns the constant polynomial.
+    /// Returns the constant polynomial of this value.
     pub fn constant(value: impl Into<BigInt>) -> Self {
         Self::from_ascending([value.into()])
     }
 
-    /// Returns z^power.
+    /// Returns the polynomial z^power.
     pub fn power(power: usize) -> Self {
         let mut ascending = vec![BigInt::zero(); power];
         ascending.push(BigInt::one());
@@ -88,13 +87,13 @@ impl Polynomial {
         self.ascending.get(power).cloned().unwrap_or_default()
     }
 
-    /// Returns the value at an exact point.
+    /// Returns the value p(point) at an exact point.
     pub fn value_at(&self, point: &Rational) -> Rational {
         let scale = point.denom().pow(self.degree() as u32);
         Rational::new(self.scaled_value_at(point), scale)
     }
 
-    /// Returns the sign of the value at an exact point: -1, 0 or 1.
+    /// Returns the sign of the value p(point) at an exact point: -1, 0 or 1.
     pub fn sign_at(&self, point: &Rational) -> i32 {
         match self.scaled_value_at(point).sign() {
             Sign::Minus => -1,
@@ -141,7 +140,7 @@ impl Polynomial {
         if primitive.leading().is_negative() { -primitive } else { primitive }
     }
 
-    /// Returns the derivative.
+    /// Returns the derivative p'(z).
     pub fn derivative(&self) -> Self {
         Self::from_ascending(self.ascending.iter().enumerate().skip(1).map(|(k, c)| c * BigInt::from(k)))
     }
@@ -189,51 +188,6 @@ impl Polynomial {
             quotient[shift] = factor;
         }
         rest.iter().all(Zero::is_zero).then(|| Self::from_ascending(quotient))
-    }
-
-    /// Returns the greatest common divisor, primitive with positive leading coefficient; 0 only for two zeros.
-    pub fn gcd(&self, other: &Self) -> Self {
-        if self.is_zero() {
-            return other.normalised();
-        }
-        if other.is_zero() {
-            return self.normalised();
-        }
-        modular::gcd(&self.primitive_part(), &other.primitive_part())
-    }
-
-    /// Returns whether no root is repeated.
-    pub fn is_square_free(&self) -> bool {
-        self.gcd(&self.derivative()).degree() == 0
-    }
-
-    /// Returns the polynomial with the same roots, each once.
-    pub fn square_free_part(&self) -> Self {
-        let normal = self.normalised();
-        let repeated = normal.gcd(&normal.derivative());
-        normal.exact_quotient(&repeated).unwrap_or(normal)
-    }
-
-    /// Returns the factors of the square-free decomposition, each with the multiplicity of its roots (Yun).
-    ///
-    /// Constant factors are left out, so the product is the polynomial up to an integer factor.
-    pub fn square_free_decomposition(&self) -> Vec<(Self, usize)> {
-        let mut factors = Vec::new();
-        let normal = self.normalised();
-        let mut repeated = normal.gcd(&normal.derivative());
-        let mut simple = normal.exact_quotient(&repeated).unwrap_or(normal);
-        let mut multiplicity = 1;
-        while simple.degree() > 0 {
-            let next = simple.gcd(&repeated);
-            let factor = simple.exact_quotient(&next).unwrap_or_default();
-            if factor.degree() > 0 {
-                factors.push((factor, multiplicity));
-            }
-            repeated = repeated.exact_quotient(&next).unwrap_or_default();
-            simple = next;
-            multiplicity += 1;
-        }
-        factors
     }
 
     /// Returns a multiple of p(a + b z), by Taylor shift and scaling; `b` must not be zero.
@@ -363,28 +317,11 @@ mod tests {
         assert_eq!(Polynomial::constant(1).to_text("h"), "1");
     }
 
-    #[test]
-    fn splits_repeated_roots() {
-        let (once, twice) = (Polynomial::from_descending(&[2, 1]), Polynomial::from_descending(&[1, 0, 3]));
-        let product = &(&once * &twice) * &twice;
-        assert_eq!(product.square_free_decomposition(), vec![(once.clone(), 1), (twice.clone(), 2)]);
-        assert_eq!(product.square_free_part(), (&once * &twice));
-    }
-
     proptest! {
         #[test]
         fn division_undoes_multiplication(a in small(), b in small()) {
             prop_assume!(!b.is_zero());
             prop_assert_eq!((&a * &b).exact_quotient(&b), Some(a));
-        }
-
-        #[test]
-        fn the_gcd_contains_a_common_factor_and_divides_both(a in small(), b in small(), common in small()) {
-            prop_assume!(!a.is_zero() && !b.is_zero() && !common.is_zero());
-            let (left, right) = (&a * &common, &b * &common);
-            let gcd = left.gcd(&right);
-            prop_assert!(gcd.exact_quotient(&common.normalised()).is_some());
-            prop_assert!(left.exact_quotient(&gcd).is_some() && right.exact_quotient(&gcd).is_some());
         }
 
         #[test]
@@ -394,20 +331,6 @@ mod tests {
             let moved = p.shifted_and_scaled(&shift, &scale);
             prop_assert_eq!(moved.sign_at(&point), p.sign_at(&(&shift + &scale * &point)));
             prop_assert_eq!(moved.is_zero(), p.is_zero());
-        }
-
-        #[test]
-        fn the_decomposition_multiplies_back(a in small(), b in small()) {
-            prop_assume!(a.degree() > 0 && !b.is_zero());
-            let p = &(&a * &a) * &b;
-            let mut product = Polynomial::constant(1);
-            for (factor, multiplicity) in p.square_free_decomposition() {
-                prop_assert!(factor.is_square_free());
-                for _ in 0..multiplicity {
-                    product = &product * &factor;
-                }
-            }
-            prop_assert_eq!(product.normalised(), p.normalised());
         }
     }
 }

@@ -33,7 +33,7 @@ pub enum ParseRationalError {
     Unreadable {
         /// The number as written, shortened when long.
         text: String,
-        /// What stands in the way, in words.
+        /// What is wrong with the text, in words.
         found: String,
     },
     /// The number has more digits than [`MAX_DIGITS`], or an exponent beyond it.
@@ -144,7 +144,7 @@ pub fn rational_from_f64(value: f64) -> Option<Rational> {
     Rational::from_float(value)
 }
 
-/// Returns the double nearest to an exact number, an infinity when it is beyond their range.
+/// Returns the double nearest to an exact number, an infinity where that is beyond the range of doubles.
 pub fn rational_to_f64(value: &Rational) -> f64 {
     value.to_f64().unwrap_or(f64::NAN)
 }

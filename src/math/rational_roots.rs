@@ -7,10 +7,10 @@ use num_traits::{Signed, ToPrimitive, Zero};
 use super::polynomial::Polynomial;
 use super::rational::Rational;
 
-/// Returns every rational root once, in ascending order; none for the zero polynomial.
+/// Returns every rational root of a polynomial once, in ascending order; none for the zero polynomial.
 ///
 /// A root n/d in lowest terms has d dividing the leading coefficient L, so L n/d is an integer below L plus the largest
-/// coefficient: a prime power beyond twice that tells it, and a division proves it.
+/// coefficient: its residue modulo a prime power beyond twice that bound determines it, and a division proves it.
 pub fn rational_roots(polynomial: &Polynomial) -> Vec<Rational> {
     if polynomial.degree() == 0 {
         return Vec::new();

@@ -83,7 +83,8 @@ impl RealRoot {
         rational_roots(&self.polynomial).into_iter().find(|value| self.compare(value) == Ordering::Equal)
     }
 
-    /// Returns the double nearest to the middle of an interval refined well below its spacing.
+    /// Returns the root as a double: the one nearest to the middle of an interval that is refined well below the
+    /// spacing of doubles.
     pub fn to_f64(&self) -> f64 {
         let mut narrow = self.clone();
         let relative =
@@ -93,7 +94,7 @@ impl RealRoot {
     }
 }
 
-/// Returns the distinct real roots strictly between two exact numbers, in ascending order.
+/// Returns the distinct real roots of a polynomial strictly between two exact numbers, in ascending order.
 ///
 /// The polynomial may have repeated roots; each is given once. A polynomial without roots, zero included, gives none.
 pub fn real_roots_between(polynomial: &Polynomial, low: &Rational, high: &Rational) -> Vec<RealRoot> {
@@ -116,7 +117,7 @@ pub fn real_roots_between(polynomial: &Polynomial, low: &Rational, high: &Ration
         .collect()
 }
 
-/// Returns the distinct positive real roots in ascending order.
+/// Returns the distinct positive real roots of a polynomial in ascending order.
 pub fn positive_roots(polynomial: &Polynomial) -> Vec<RealRoot> {
     real_roots_between(polynomial, &Rational::zero(), &root_bound(polynomial))
 }

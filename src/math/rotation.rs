@@ -3,7 +3,7 @@
 use super::lanes::Lanes;
 use nalgebra::{Rotation3, Vector3};
 
-/// The rotation vector of `rotation` \[rad\]: `log(R)^vee`, of length at most pi.
+/// Returns the rotation vector of `rotation` \[rad\]: `log(R)^vee`, of length at most pi.
 ///
 /// The axis comes from the skew part, whose entries are differences of order `sin(angle)`, so small rotations keep
 /// full relative accuracy; within 1e-3 rad of a half turn, where the skew part vanishes, it comes from the symmetric part.

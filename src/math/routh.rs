@@ -9,12 +9,13 @@ use num_traits::{Signed, Zero};
 use super::polynomial::{Polynomial, taylor_shift};
 use super::rational::Rational;
 
-/// Returns whether every root is strictly inside the unit circle. Constants have no root; zero has every one.
+/// Returns whether every root of a polynomial is strictly inside the unit circle: so for a constant, which has no root,
+/// and not for zero, of which every number is a root.
 pub fn is_schur(polynomial: &Polynomial) -> bool {
     !polynomial.is_zero() && is_hurwitz(&half_plane_image(polynomial, polynomial.degree()))
 }
 
-/// Returns whether every root has a modulus strictly below an exact positive radius.
+/// Returns whether every root of a polynomial has a modulus strictly below an exact positive radius.
 pub fn is_schur_within(polynomial: &Polynomial, radius: &Rational) -> bool {
     radius.is_positive() && is_schur(&polynomial.shifted_and_scaled(&Rational::zero(), radius))
 }

@@ -5,10 +5,11 @@ use nalgebra::Vector6;
 /// Sweeps over all pairs of rows; convergence is quadratic and has never needed half of them.
 const SWEEPS: usize = 30;
 
-/// `J = U S V^T` of the first `M` rows of `J`: the workspace, then the result.
+/// The singular value decomposition `J = U S V^T` of the first `M` rows of `J`: a workspace, and after
+/// [`compute`](Self::compute) the result.
 ///
 /// Rows are rotated in pairs until they are orthogonal (Hestenes 1958); the singular values come out to high relative
-/// accuracy, and the sweeps are bounded, so NaN ends the work like anything else.
+/// accuracy, and the number of sweeps is bounded, for matrices with NaN too.
 #[derive(Clone, Debug)]
 pub struct SingularValues<const M: usize> {
     rotations: RowRotations,
@@ -16,12 +17,12 @@ pub struct SingularValues<const M: usize> {
 }
 
 impl<const M: usize> SingularValues<M> {
-    /// A workspace for matrices of `n` columns, so that [`compute`](Self::compute) allocates nothing.
+    /// Returns a workspace for matrices of `n` columns, so that [`compute`](Self::compute) allocates nothing.
     pub fn with_capacity(n: usize) -> Self {
         Self { rotations: RowRotations::with_capacity(M, n), values: [0.0; M] }
     }
 
-    /// The decomposition of the matrix with these columns.
+    /// Returns the decomposition of the matrix with these columns.
     pub fn of(columns: &[Vector6<f64>]) -> Self {
         let mut result = Self::with_capacity(columns.len());
         result.compute(columns);
@@ -34,17 +35,17 @@ impl<const M: usize> SingularValues<M> {
         self.values.copy_from_slice(&self.rotations.values);
     }
 
-    /// The singular values, in no particular order.
+    /// Returns the singular values, in no particular order.
     pub fn values(&self) -> &[f64; M] {
         &self.values
     }
 
-    /// The smallest of the `min(M, n)` singular values that an `M x n` matrix can have.
+    /// Returns the smallest of the `min(M, n)` singular values that an `M x n` matrix can have.
     pub fn smallest(&self) -> f64 {
         self.rotations.smallest()
     }
 
-    /// The largest singular value.
+    /// Returns the largest singular value.
     pub fn largest(&self) -> f64 {
         self.values.iter().fold(0.0, |most: f64, &value| most.max(value))
     }
@@ -52,7 +53,7 @@ impl<const M: usize> SingularValues<M> {
     /// Adds `sum_i v_i weight(s_i) (u_i . v)` to `out`: with `weight(s) = 1/s` the pseudoinverse applied to `v`,
     /// with `s / (s^2 + lambda^2)` its damped form.
     ///
-    /// A zero singular value contributes nothing: `weight` is not asked about it.
+    /// A zero singular value contributes nothing: `weight` is not called for it.
     pub fn apply(&self, v: &[f64; M], weight: impl Fn(f64) -> f64, out: &mut [f64]) {
         self.rotations.apply(v, weight, out);
     }
@@ -151,7 +152,7 @@ impl RowRotations {
         true
     }
 
-    /// The singular values, in no particular order.
+    /// Returns the singular values, in no particular order.
     pub(crate) fn values(&self) -> &[f64] {
         &self.values
     }

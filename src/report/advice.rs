@@ -1,7 +1,7 @@
 //! What would make a plan better.
 
 use crate::formula::{Formula, FormulaTable};
-use crate::math::figure;
+use crate::math::number_text;
 use crate::planner::{LimitKind, Plan, PlanStatus};
 use crate::scenario::Scenario;
 
@@ -46,7 +46,7 @@ pub fn suggestions(plan: &Plan, table: &FormulaTable, scenario: &Scenario) -> Ve
         let (fold, held) =
             (1_u64 << halvings.min(60), if scenario.law.gain.is_some() { "gain" } else { "h" });
         let why = format!("errors about {fold} times smaller: order {} at the same {held}", formula.order());
-        next.push(Suggestion::new(format!("--set sigma={}", figure(plan.sigma / 2.0)), why));
+        next.push(Suggestion::new(format!("--set sigma={}", number_text(plan.sigma / 2.0)), why));
     }
     if plan.formula != "split-ab6" {
         let arguments = "--set formula=split-ab6 --set law.h=1 --set start=rk8";

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::{PlanFormat, Table, short, sparkline};
-use crate::math::figure;
+use crate::math::number_text;
 use crate::planner::{ArmPlan, Noise, Plan};
 
 /// Width of the curves of the task errors [characters].
@@ -23,7 +23,7 @@ impl PlanFormat for PlanText {
             names.len(),
             names.join(", "),
             plan.steps,
-            figure(plan.sigma)
+            number_text(plan.sigma)
         )?;
         writeln!(out, "formula {}, h = {}, start {}", plan.formula, short(plan.h), plan.start)?;
         plan.noise.iter().try_for_each(|noise| writeln!(out, "{}", disturbed_by(noise)))?;

@@ -6,9 +6,9 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 use thiserror::Error;
 
 use super::displacement::displacement;
+use super::report::Report;
 use super::size::MAX_SIZE;
 use super::toml_table::{Entries, read_toml, wrong_type};
-use super::urdf::report::Report;
 use super::{Defect, Diagnostic, JointKind, Robot, diagnostic, names};
 
 /// The keys of one joint's corrections.
@@ -23,7 +23,7 @@ pub struct JointCorrection {
     pub rpy: [f64; 3],
     /// Position of the model at which the arm reads zero \[rad\] or \[m\].
     pub zero: f64,
-    /// Whether the arm counts against the model's axis.
+    /// Whether the arm's reading falls as the model's position grows: the arm counts against the model's axis.
     pub reversed: bool,
 }
 
@@ -66,47 +66,47 @@ pub enum CalibrationError {
     UnknownJoint {
         /// The name in the calibration.
         name: String,
-        /// The line where it stands, where it was read from a text.
+        /// Line of the joint's entry in the calibration, from 1; `None` where it was not read from a text.
         line: Option<usize>,
         /// The joints whose names look like it, nearest first.
         nearest: Vec<String>,
-        /// All joints.
+        /// The names of all joints of the robot.
         known: Vec<String>,
     },
     /// `zero` or `reversed` of a joint that has no single position.
     #[error("{}joint {} is {kind}: it has no position that `zero` or `reversed` could correct", at_line(*.line), names::quote(.joint))]
     NoPosition {
-        /// The joint.
+        /// Name of the joint.
         joint: String,
-        /// The line where it stands, where it was read from a text.
+        /// Line of the joint's entry in the calibration, from 1; `None` where it was not read from a text.
         line: Option<usize>,
-        /// Its type.
+        /// Type of the joint.
         kind: JointKind,
     },
     /// A joint whose own values could not be read.
     #[error("{}joint {} can not be corrected, because it is defective: {}", at_line(*.line), names::quote(.joint), .defect.reason)]
     Defective {
-        /// The joint.
+        /// Name of the joint.
         joint: String,
-        /// The line where it stands, where it was read from a text.
+        /// Line of the joint's entry in the calibration, from 1; `None` where it was not read from a text.
         line: Option<usize>,
-        /// What is wrong with it.
+        /// What is wrong with the joint.
         defect: Defect,
     },
     /// A number that is not finite, or beyond any arm.
     #[error("{}the correction {value} of joint {} is not finite, or beyond any arm", at_line(*.line), names::quote(.joint))]
     Size {
-        /// The joint.
+        /// Name of the joint.
         joint: String,
-        /// The line where it stands, where it was read from a text.
+        /// Line of the joint's entry in the calibration, from 1; `None` where it was not read from a text.
         line: Option<usize>,
-        /// The number.
+        /// The number that was refused.
         value: f64,
     },
 }
 
 impl CalibrationError {
-    /// The line of the calibration that it is about, where there is one.
+    /// Returns the line of the calibration's text that the error is about, from 1, where it is known.
     pub fn line(&self) -> Option<usize> {
         match self {
             Self::Text(found) => diagnostic::first_error(found).map(|first| first.line),
@@ -146,7 +146,7 @@ impl Calibration {
         self.corrections.insert(joint.into(), correction);
     }
 
-    /// The corrections by joint name, in alphabetical order.
+    /// Returns the corrections by joint name, in alphabetical order.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &JointCorrection)> {
         self.corrections.iter().map(|(joint, correction)| (joint.as_str(), correction))
     }
@@ -187,8 +187,8 @@ impl Robot {
     /// Returns the robot with the corrections of a calibration in its joints.
     ///
     /// With `p` and `R` of the joint's origin, the corrected one has `p + xyz` and `R(rpy) R`. An arm that reads `q`
-    /// stands at the model's position `q + zero`, or `-q + zero` where it is `reversed`; limits stay where they are on the
-    /// arm, and so do the joints that follow: they are told in readings from then on.
+    /// stands at the model's position `q + zero`, or `-q + zero` where it is `reversed`; limits stay where they are on
+    /// the arm, and joints that follow stay where they are: their ratios and offsets refer to readings from then on.
     ///
     /// # Errors
     /// [`CalibrationError`]: a joint that the robot does not have (with the nearest names), one that is defective, or

@@ -3,7 +3,7 @@
 use nalgebra::IsometryMatrix3;
 
 use super::segment::{Folded, Frame, Single};
-use super::{ChainScratch, JointKind, Limits};
+use super::{JointKind, Limits};
 
 /// A joint of a chain: one column of its Jacobian.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,9 +11,9 @@ use super::{ChainScratch, JointKind, Limits};
 pub struct ChainJoint {
     /// The joint's name; where mimic joints are on the path, the name of the joint that drives them.
     pub name: String,
-    /// How it moves.
+    /// How the joint moves.
     pub kind: JointKind,
-    /// Its limits, narrowed by those of the mimic joints on the path that it drives; infinite where unknown.
+    /// The joint's limits, narrowed by those of the mimic joints on the path that follow it; infinite where unknown.
     pub limits: Limits,
 }
 
@@ -26,9 +26,9 @@ pub struct LimitViolation {
     pub joint: String,
     /// The position \[rad\] or \[m\].
     pub value: f64,
-    /// The smallest allowed.
+    /// The smallest position that the joint allows \[rad\] or \[m\].
     pub lower: f64,
-    /// The largest allowed.
+    /// The largest position that the joint allows \[rad\] or \[m\].
     pub upper: f64,
 }
 
@@ -80,23 +80,23 @@ pub(super) struct Place {
 }
 
 impl Chain {
-    /// Number of joints: the length of `q` and the number of Jacobian columns.
+    /// Returns the number of joints: the length of `q` and the number of Jacobian columns.
     pub fn dof(&self) -> usize {
         self.joints.len()
     }
 
-    /// The joints that the pose depends on, one per column, in path order. A joint off the path that moves joints on it
-    /// stands at the place of the first of them.
+    /// Returns the joints that the pose depends on, one per Jacobian column, in path order. A joint off the path that
+    /// moves joints on the path takes the place of the first of them.
     pub fn joints(&self) -> &[ChainJoint] {
         &self.joints
     }
 
-    /// Name of the link where the path begins.
+    /// Returns the name of the link where the path begins.
     pub fn base(&self) -> &str {
         &self.base
     }
 
-    /// Name of the link where the path ends.
+    /// Returns the name of the link where the path ends.
     pub fn tip(&self) -> &str {
         &self.tip
     }
@@ -118,17 +118,13 @@ impl Chain {
         mounted
     }
 
-    /// Returns working memory for [`Chain::forward`]: one per thread.
-    pub fn scratch(&self) -> ChainScratch {
-        ChainScratch::with_length(self.places.len())
-    }
-
-    /// The smallest and largest position of each joint \[rad\] or \[m\], in the order of `q`.
+    /// Returns the smallest and largest position of each joint \[rad\] or \[m\], in the order of `q`.
     pub fn position_limits(&self) -> impl Iterator<Item = (f64, f64)> {
         self.joints.iter().map(|joint| (joint.limits.lower, joint.limits.upper))
     }
 
-    /// Whether every joint position lies within its limits. NaN does not; nor does a `q` of another length.
+    /// Returns whether every position of `q` is within its joint's limits; false for NaN and for a `q` of another
+    /// length.
     pub fn within_limits(&self, q: &[f64]) -> bool {
         q.len() == self.dof() && self.joints.iter().zip(q).all(|(joint, &q)| joint.limits.contains(q))
     }

@@ -9,7 +9,7 @@ pub enum Severity {
     Note,
     /// Doubtful; the robot is usable and the message says how the file was understood.
     Warning,
-    /// Wrong; what it touches can not be used.
+    /// Wrong; the joint, link or file that the finding is about can not be used.
     Error,
 }
 
@@ -34,18 +34,18 @@ impl fmt::Display for Severity {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Diagnostic {
-    /// How much it matters.
+    /// How much the finding matters.
     pub severity: Severity,
-    /// Line, counted from 1.
+    /// Line of the finding, counted from 1.
     pub line: usize,
-    /// Column in characters, counted from 1.
+    /// Column of the finding in characters, counted from 1.
     pub column: usize,
     /// What is wrong, and what to do about it, as a sentence.
     pub message: String,
 }
 
 impl Diagnostic {
-    /// Returns an error at a place.
+    /// Returns a finding of severity error at a line and a column, both counted from 1.
     pub fn error(line: usize, column: usize, message: impl Into<String>) -> Diagnostic {
         Diagnostic { severity: Severity::Error, line, column, message: message.into() }
     }

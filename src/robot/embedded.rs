@@ -10,7 +10,7 @@ static ROBOTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/robots");
 /// Why an embedded robot could not be given.
 #[derive(Debug, Error)]
 pub enum EmbeddedError {
-    /// There is none of that name.
+    /// No embedded robot has that name.
     #[error("there is no embedded robot {}{}; embedded are {}", words::quote(.name),
             words::suggestion(.nearest), words::list(.known, "and"))]
     Unknown {
@@ -18,10 +18,10 @@ pub enum EmbeddedError {
         name: String,
         /// The names that look like it, nearest first.
         nearest: Vec<String>,
-        /// All names.
+        /// The names of all embedded robots.
         known: Vec<String>,
     },
-    /// Its file does not read.
+    /// The robot's file can not be read.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
 }
@@ -33,7 +33,7 @@ pub fn names() -> Vec<&'static str> {
     names
 }
 
-/// Returns the robot of that name.
+/// Returns the embedded robot of that name.
 ///
 /// # Errors
 /// [`EmbeddedError::Unknown`], with the nearest names.
@@ -41,7 +41,7 @@ pub fn get(name: &str) -> Result<Robot, EmbeddedError> {
     Ok(Robot::from_urdf(text(name)?)?)
 }
 
-/// Returns the URDF text of the robot of that name.
+/// Returns the URDF text of the embedded robot of that name.
 ///
 /// # Errors
 /// [`EmbeddedError::Unknown`], with the nearest names.

@@ -14,14 +14,14 @@ const UNKNOWN: f64 = 1e308;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// A joint or a link whose own file is wrong: what is written from it would look sound.
+    /// A joint or a link that is defective: what is written from it would look sound.
     #[error("{what} {} is defective (line {}): {}; mend it first", names::quote(.name), .defect.line, .defect.reason)]
     Defective {
         /// `joint` or `link`.
         what: &'static str,
-        /// Its name.
+        /// Name of the joint or link.
         name: String,
-        /// What is wrong with it.
+        /// What is wrong with the joint or link.
         defect: Defect,
     },
 }

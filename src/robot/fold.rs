@@ -1,13 +1,25 @@
-//! From the joints along a path to constants and motions about z.
+//! From the joints along a path to a chain: constants, and motions about z.
 
 use std::collections::{HashMap, HashSet};
 
 use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Translation3, Vector3};
 
 use super::chain::Place;
-use super::path::{ChainError, Step};
+use super::path::{self, Step};
 use super::segment::{Folded, Motion};
-use super::{Chain, ChainJoint, Joint, Limits, Robot};
+use super::{Chain, ChainError, ChainJoint, Joint, Limits, Robot};
+
+impl Robot {
+    /// Returns the directed path from link `base` to link `tip`, in either direction and through a common
+    /// ancestor if need be, ready for kinematics. Links with only fixed joints between them make a chain of no joints.
+    ///
+    /// # Errors
+    /// [`ChainError`]: a link that does not exist (with the nearest names), `base` equal to `tip`, links that
+    /// no joints connect, or a joint on the way that is defective or of a kind that a chain can not carry.
+    pub fn chain(&self, base: &str, tip: &str) -> Result<Chain, ChainError> {
+        fold(self, &path::steps(self, base, tip)?, base, tip)
+    }
+}
 
 /// A moving joint of the path: `|multiplier| q_column + offset` along or about `direction`, in the frame
 /// that `before` leads to.
@@ -23,7 +35,7 @@ struct Moving {
 /// Going down a joint is `origin M(axis, x)`; going up is the inverse, `M(-axis, x) origin^-1`. With
 /// `M(axis, x) = R M(z, x) R^T`, where R turns z onto the axis, all constants between two motions merge. A
 /// negative multiplier turns the axis round, and an offset is a constant motion, so only `|multiplier|` stays.
-pub(super) fn fold(robot: &Robot, steps: &[Step], base: &str, tip: &str) -> Result<Chain, ChainError> {
+fn fold(robot: &Robot, steps: &[Step], base: &str, tip: &str) -> Result<Chain, ChainError> {
     let mut columns = Columns::of(robot, steps);
     let mut moving: Vec<Moving> = Vec::new();
     let mut constant = IsometryMatrix3::identity();
@@ -158,7 +170,7 @@ impl Columns {
 }
 
 /// Returns a driver's limits narrowed to what one of its followers allows.
-pub(super) fn narrowed(driver: Limits, follower: &Joint) -> Limits {
+fn narrowed(driver: Limits, follower: &Joint) -> Limits {
     let Some(mimic) = follower.mimic else { return driver };
     let at = |position: f64| (position - mimic.offset) / mimic.multiplier;
     let (a, b) = (at(follower.limits.lower), at(follower.limits.upper));

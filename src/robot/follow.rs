@@ -22,7 +22,8 @@ impl Robot {
         }
     }
 
-    /// Returns the joint that a joint follows at first hand: the one that its `<mimic>` names.
+    /// Returns the joint that a joint follows at first hand: the one that its `<mimic>` names. `None` for a joint that
+    /// follows none, or that the robot does not have.
     pub fn joint_followed_by(&self, joint: &str) -> Option<&Joint> {
         self.joint(joint)?.follows.map(|follows| &self.joints[follows.driver])
     }

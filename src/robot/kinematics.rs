@@ -28,7 +28,8 @@ pub struct ChainScratch {
     tip: Frame<f64>,
 }
 
-/// A chain whose kinematics have been run: the proof is that you hold it.
+/// A chain whose kinematics have been run, as [`Chain::forward`] returns it: whoever holds one may ask for pose and
+/// Jacobian.
 #[derive(Debug, Clone, Copy)]
 pub struct Posed<'a> {
     chain: &'a Chain,
@@ -153,7 +154,7 @@ pub(super) fn into_twist<V: Lanes>(token: V::Token, axis: &mut Axis<V::Array>, m
 }
 
 impl ChainScratch {
-    pub(super) fn with_length(length: usize) -> ChainScratch {
+    fn with_length(length: usize) -> ChainScratch {
         ChainScratch {
             level: level(),
             motions: Motions::with_length(length),
@@ -209,6 +210,11 @@ impl Kernel for Columns<'_> {
 }
 
 impl Chain {
+    /// Returns working memory for [`Chain::forward`]: one per thread.
+    pub fn scratch(&self) -> ChainScratch {
+        ChainScratch::with_length(self.places.len())
+    }
+
     /// Runs the kinematics at joint positions `q` \[rad\] or \[m\] (one per [`Chain::joints`]) and returns the
     /// chain posed there. Allocates nothing, unless `scratch` was made for a chain with fewer moving axes.
     ///
@@ -236,7 +242,7 @@ impl Posed<'_> {
         self.scratch.tip.p.into()
     }
 
-    /// Returns the number of columns: [`Chain::dof`].
+    /// Returns the number of columns of the Jacobian: [`Chain::dof`].
     pub fn dof(&self) -> usize {
         self.chain.dof()
     }

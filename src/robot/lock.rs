@@ -24,23 +24,23 @@ pub enum LockError {
     /// A joint whose values could not be read.
     #[error("joint {} can not be locked, because it is defective (line {}): {}", names::quote(.joint), .defect.line, .defect.reason)]
     Defective {
-        /// The joint.
+        /// Name of the joint.
         joint: String,
-        /// What is wrong with it.
+        /// What is wrong with the joint.
         defect: Defect,
     },
-    /// A joint that does not move in the first place.
+    /// A joint that is fixed already.
     #[error("joint {} is fixed already; lock a joint that moves", names::quote(.joint))]
     Fixed {
-        /// The joint.
+        /// Name of the joint.
         joint: String,
     },
     /// Too few or too many numbers for the kind of joint.
     #[error("joint {} is {kind} and is locked at {}, not at {count} numbers", names::quote(.joint), wanted(*.kind))]
     Count {
-        /// The joint.
+        /// Name of the joint.
         joint: String,
-        /// Its type.
+        /// Type of the joint.
         kind: JointKind,
         /// How many numbers were given.
         count: usize,
@@ -48,29 +48,29 @@ pub enum LockError {
     /// A position that the joint does not reach, or no number.
     #[error("joint {} can not be locked at {value}: it moves between {lower} and {upper}", names::quote(.joint))]
     OutsideLimits {
-        /// The joint.
+        /// Name of the joint.
         joint: String,
         /// The position asked for [rad or m].
         value: f64,
-        /// The smallest allowed.
+        /// The smallest position that the joint allows [rad or m].
         lower: f64,
-        /// The largest allowed.
+        /// The largest position that the joint allows [rad or m].
         upper: f64,
     },
     /// A pose that the joint can not take.
     #[error("joint {} can not be locked there: it is {kind}, and {problem}", names::quote(.joint))]
     Pose {
-        /// The joint.
+        /// Name of the joint.
         joint: String,
-        /// Its type.
+        /// Type of the joint.
         kind: JointKind,
-        /// What the pose asks too much.
+        /// How the joint moves, which the pose does not fit.
         problem: &'static str,
     },
     /// A position, or a number of a pose, that no arm has.
     #[error("joint {} can not be locked there: {problem}", names::quote(.joint))]
     Size {
-        /// The joint, or one that follows it.
+        /// Name of the joint that would stand there: the one to be locked, or one that follows it.
         joint: String,
         /// What is wrong with the number.
         problem: String,
@@ -79,17 +79,17 @@ pub enum LockError {
     #[error("joint {} can not be locked at {position}: {}, which follows it, would stand at {value}, and moves between \
              {lower} and {upper}", names::quote(.joint), names::quote(.follower))]
     Follower {
-        /// The joint.
+        /// Name of the joint.
         joint: String,
         /// The position asked for [rad or m].
         position: f64,
         /// The joint that follows it.
         follower: String,
-        /// Where that would stand [rad or m].
+        /// Where the follower would stand [rad or m].
         value: f64,
-        /// The smallest that it allows.
+        /// The smallest position that the follower allows [rad or m].
         lower: f64,
-        /// The largest that it allows.
+        /// The largest position that the follower allows [rad or m].
         upper: f64,
     },
 }
@@ -163,17 +163,6 @@ impl Robot {
             }
         }
         Ok(())
-    }
-
-    /// The place of a joint among [`Robot::joints`].
-    pub(super) fn joint_index(&self, name: &str) -> Option<usize> {
-        self.joints.iter().position(|joint| joint.name == name)
-    }
-
-    /// The joints whose names look like `name`, nearest first.
-    pub(super) fn joints_like(&self, name: &str) -> Vec<String> {
-        let all = self.joints.iter().map(|joint| joint.name.as_str());
-        names::nearest(name, all).into_iter().map(str::to_owned).collect()
     }
 
     fn no_such_joint(&self, name: &str) -> LockError {

@@ -2,11 +2,14 @@
 //!
 //! [`Robot::from_urdf`] gives a robot and its [`Diagnostic`]s; a defective joint spoils only the chains that
 //! pass through it. [`Robot::from_dh`] makes one of a Denavit-Hartenberg table. [`Robot::with_calibration`],
-//! [`Robot::with_locked`] and [`Robot::with_tool`] give changed copies, [`Robot::to_urdf`] writes any of them down. [`Robot::chain`] gives the path between any two links, in either direction, and
-//! [`Chain::forward`] its kinematics.
+//! [`Robot::with_locked`] and [`Robot::with_tool`] give changed copies, [`Robot::to_urdf`] writes any of them down.
+//! [`Robot::chain`] gives the path between any two links, in either direction, and [`Chain::forward`] its kinematics.
+//!
+//! [`Robot`] itself knows none of these: each is a file with an `impl Robot` of its own.
 
 mod calibration;
 mod chain;
+mod chain_error;
 mod dh;
 mod diagnostic;
 mod displacement;
@@ -17,12 +20,16 @@ mod fold;
 mod follow;
 mod kinematics;
 mod lock;
+mod lookup;
 mod model;
 mod names;
 pub(crate) mod nearby;
 mod path;
+mod places;
 mod poses;
 mod positions;
+mod read_error;
+mod report;
 mod segment;
 mod side_by_side;
 mod size;
@@ -34,17 +41,18 @@ mod visual;
 
 pub use calibration::{Calibration, CalibrationError, JointCorrection};
 pub use chain::{Chain, ChainJoint, LimitViolation};
+pub use chain_error::ChainError;
 pub use dh::{DhConvention, DhError, DhRow, DhTable};
 pub use diagnostic::{Diagnostic, Severity};
 pub use export::ExportError;
 pub use kinematics::{ChainScratch, Posed};
 pub use lock::LockError;
 pub use model::{Defect, Joint, JointKind, Limits, Link, Mimic, Robot};
-pub use path::ChainError;
 pub use positions::PositionsError;
+pub use read_error::ReadError;
 pub use tool::ToolError;
 pub use tree::{TreeRow, TreeRows};
-pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, ReadError, UrdfError, UrdfOptions};
+pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 
 #[cfg(feature = "cli")]

@@ -2,14 +2,10 @@
 
 use std::collections::HashMap;
 use std::fmt;
-use std::path::Path;
 
 use nalgebra::{IsometryMatrix3, Vector3};
 
-use super::path::{self, ChainError};
-use super::tree::TreeRows;
-use super::urdf;
-use super::{Chain, Diagnostic, ReadError, UrdfError, UrdfOptions};
+use super::Diagnostic;
 
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -31,7 +27,7 @@ pub enum JointKind {
 }
 
 impl JointKind {
-    /// Every kind, in the order of the URDF standard.
+    /// Every kind of joint, in the order of the URDF standard.
     pub const ALL: [JointKind; 7] = [
         JointKind::Revolute,
         JointKind::Continuous,
@@ -42,7 +38,7 @@ impl JointKind {
         JointKind::Spherical,
     ];
 
-    /// The word that URDF uses for it.
+    /// Returns the word that URDF uses for the kind of joint.
     pub fn as_str(self) -> &'static str {
         match self {
             JointKind::Revolute => "revolute",
@@ -77,7 +73,7 @@ impl fmt::Display for JointKind {
     }
 }
 
-/// The range and speed a joint allows. What the file does not say is infinite: unknown, and not checked.
+/// The range and the speed that a joint allows. What the file does not say is infinite: unknown, and not checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Smallest position \[rad\] or \[m\].
@@ -89,7 +85,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// No limit known.
+    /// The limits of a joint of which none is known: all infinite.
     pub const UNLIMITED: Limits =
         Limits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: f64::INFINITY };
 
@@ -99,7 +95,7 @@ impl Limits {
     }
 }
 
-/// A joint that follows another: `position = multiplier * driver + offset`.
+/// How a joint follows another: `position = multiplier * driver + offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mimic {
     /// Index of the joint that is followed; never a mimic joint itself, because mimic chains are folded.
@@ -128,9 +124,9 @@ impl Mimic {
 pub struct Defect {
     /// The reason, as a sentence.
     pub reason: String,
-    /// Line, counted from 1.
+    /// Line of the defect in the file, counted from 1.
     pub line: usize,
-    /// Column, counted from 1.
+    /// Column of the defect in the file, counted from 1.
     pub column: usize,
 }
 
@@ -140,9 +136,9 @@ pub struct Defect {
 pub struct Link {
     /// The link's name, unique in the robot.
     pub name: String,
-    /// Index of the joint above it; `None` for a root.
+    /// Index of the joint above the link; `None` for a root.
     pub parent_joint: Option<usize>,
-    /// Set when no chain may pass through the link.
+    /// What is wrong with the link; where something is, no chain can pass through it.
     pub defect: Option<Defect>,
 }
 
@@ -152,11 +148,11 @@ pub struct Link {
 pub struct Joint {
     /// The joint's name.
     pub name: String,
-    /// How it moves.
+    /// How the joint moves.
     pub kind: JointKind,
-    /// Index of the link above.
+    /// Index of the link above the joint.
     pub parent: usize,
-    /// Index of the link below; always greater than `parent`.
+    /// Index of the link below the joint; always greater than `parent`.
     pub child: usize,
     /// Pose of the child's frame in the parent's at joint position zero.
     pub origin: IsometryMatrix3<f64>,
@@ -164,12 +160,12 @@ pub struct Joint {
     pub axis: Vector3<f64>,
     /// The joint's own limits (of a mimic joint too).
     pub limits: Limits,
-    /// Set when the joint follows another.
+    /// How the joint follows another; `None` where it moves by itself, or not at all.
     pub mimic: Option<Mimic>,
     /// What the joint follows by its own `<mimic>`: perhaps a joint that follows another one itself. What is done to that
     /// one reaches this one.
     pub(super) follows: Option<Mimic>,
-    /// Set when no chain may pass through the joint.
+    /// What is wrong with the joint; where something is, no chain can pass through it.
     pub defect: Option<Defect>,
     /// Roll, pitch and yaw that `origin` was made from, where they are known: bits that the matrix does not give back.
     pub(super) angles: Option<[f64; 3]>,
@@ -206,116 +202,53 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// Returns the robot that a URDF text describes, with everything found wrong in it as
-    /// [`diagnostics`](Robot::diagnostics). A defective joint spoils only the chains through it.
-    ///
-    /// # Errors
-    /// [`UrdfError`] when no robot can be made at all: the text is not XML, not URDF (SDF, MJCF, xacro), holds
-    /// a DTD, has no link, or exceeds the size caps. The error carries every finding with its place.
-    ///
-    /// ```
-    /// use kinstep::robot::Robot;
-    /// let robot = Robot::from_urdf(
-    ///     r#"<robot name="pendulum">
-    ///          <link name="base"/> <link name="bob"/>
-    ///          <joint name="pivot" type="continuous">
-    ///            <parent link="base"/> <child link="bob"/> <axis xyz="0 1 0"/>
-    ///          </joint>
-    ///        </robot>"#,
-    /// )?;
-    /// assert_eq!(robot.joints()[0].name, "pivot");
-    /// # Ok::<(), kinstep::robot::UrdfError>(())
-    /// ```
-    pub fn from_urdf(text: &str) -> Result<Robot, UrdfError> {
-        urdf::read_text(text, &UrdfOptions::default())
-    }
-
-    /// As [`Robot::from_urdf`], with options.
-    ///
-    /// # Errors
-    /// As [`Robot::from_urdf`].
-    pub fn from_urdf_with(text: &str, options: &UrdfOptions) -> Result<Robot, UrdfError> {
-        urdf::read_text(text, options)
-    }
-
-    /// As [`Robot::from_urdf_with`], from bytes whose encoding is checked first: UTF-8, with or without a mark.
-    ///
-    /// # Errors
-    /// As [`Robot::from_urdf`]; also when the bytes are not UTF-8 (the message names the encoding).
-    pub fn from_urdf_bytes(bytes: &[u8], options: &UrdfOptions) -> Result<Robot, UrdfError> {
-        urdf::read_bytes(bytes, options)
-    }
-
-    /// As [`Robot::from_urdf_bytes`], from a file; a robot without a name is called after the file.
-    ///
-    /// # Errors
-    /// [`ReadError::File`] when the file can not be read, [`ReadError::Urdf`] as [`Robot::from_urdf`].
-    pub fn from_urdf_file(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<Robot, ReadError> {
-        urdf::read_file(path.as_ref(), options)
-    }
-
     /// A robot of links depth first and their joints in that order.
     pub(super) fn assembled(name: String, links: Vec<Link>, joints: Vec<Joint>) -> Robot {
         let link_by_name = links.iter().enumerate().map(|(i, link)| (link.name.clone(), i)).collect();
         Robot { name, links, joints, strays: Vec::new(), link_by_name, diagnostics: Vec::new() }
     }
 
-    /// The robot's name.
+    /// Returns the robot's name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// All links, every parent before its children, children in the order of the file.
+    /// Returns all links, every parent before its children, children in the order of the file.
     pub fn links(&self) -> &[Link] {
         &self.links
     }
 
-    /// The joints of the tree, in the order of their child links.
+    /// Returns the joints of the tree, in the order of their child links.
     pub fn joints(&self) -> &[Joint] {
         &self.joints
     }
 
-    /// Everything that was found in the file, by place.
+    /// Returns everything that was found in the robot's file, by place.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
     }
 
-    /// The link of that name.
+    /// Returns the link of that name.
     pub fn link(&self, name: &str) -> Option<&Link> {
         self.link_by_name.get(name).map(|&index| &self.links[index])
     }
 
-    /// The joint of that name.
+    /// Returns the joint of that name.
     pub fn joint(&self, name: &str) -> Option<&Joint> {
         self.joints.iter().find(|joint| joint.name == name)
     }
 
-    /// The links that hang from no joint.
+    /// Returns the links that hang from no joint.
     pub fn roots(&self) -> impl Iterator<Item = &Link> {
         self.links.iter().filter(|link| link.parent_joint.is_none())
     }
 
-    /// The links from which no joint hangs: the usual tips.
+    /// Returns the links from which no joint hangs: the usual tips.
     pub fn leaves(&self) -> impl Iterator<Item = &Link> {
         let mut has_child = vec![false; self.links.len()];
         for joint in &self.joints {
             has_child[joint.parent] = true;
         }
         self.links.iter().zip(has_child).filter(|(_, has_child)| !has_child).map(|(link, _)| link)
-    }
-
-    /// The tree as people draw it: one row per link, depth first, with the joint above it.
-    pub fn tree(&self) -> TreeRows<'_> {
-        TreeRows::new(self)
-    }
-
-    /// Returns the directed path from link `base` to link `tip`, in either direction and through a common
-    /// ancestor if need be, ready for kinematics. Links with only fixed joints between them make a chain of no joints.
-    ///
-    /// # Errors
-    /// [`ChainError`]: a link that does not exist (with the nearest names), `base` equal to `tip`, links that
-    /// no joints connect, or a joint on the way that is defective or of a kind that a chain can not carry.
-    pub fn chain(&self, base: &str, tip: &str) -> Result<Chain, ChainError> {
-        path::chain(self, base, tip)
     }
 }

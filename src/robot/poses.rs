@@ -26,7 +26,8 @@ impl Robot {
         poses
     }
 
-    /// The joints that move on their own, in the order of [`Robot::joints`]: one degree of freedom, following no other.
+    /// Returns the joints that move on their own, in the order of [`Robot::joints`]: one degree of freedom, following
+    /// no other.
     pub fn movable_joints(&self) -> impl Iterator<Item = &Joint> {
         self.joints.iter().filter(|joint| joint.kind.is_movable() && joint.mimic.is_none())
     }

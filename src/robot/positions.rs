@@ -2,40 +2,40 @@
 
 use super::names::{printable, quote};
 use super::{Chain, LimitViolation};
-use crate::math::figure;
+use crate::math::number_text;
 use thiserror::Error;
 
 /// Why joint positions do not fit a chain.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PositionsError {
-    /// There are too few or too many.
+    /// There are too few or too many positions.
     #[error("expected {expected} positions ({}), got {got}", printable(.joints))]
     Length {
-        /// Positions given.
+        /// Number of positions given.
         got: usize,
-        /// Positions needed.
+        /// Number of positions needed: one per joint of the chain.
         expected: usize,
-        /// The joints' names, in order.
+        /// The names of the chain's joints, in order.
         joints: String,
     },
-    /// One is infinite or NaN.
+    /// A position is infinite or NaN.
     #[error("the position of joint {} is {value}, which is not a finite number", quote(.joint))]
     NonFinite {
         /// Index of the joint in [`Chain::joints`].
         index: usize,
         /// The joint's name.
         joint: String,
-        /// What was given.
+        /// The position that was given.
         value: f64,
     },
-    /// One lies outside the joint's limits.
-    #[error("joint {} would be at {}, outside its limits [{}, {}]", quote(&.0.joint), figure(.0.value), figure(.0.lower), figure(.0.upper))]
+    /// A position is outside its joint's limits.
+    #[error("joint {} would be at {}, outside its limits [{}, {}]", quote(&.0.joint), number_text(.0.value), number_text(.0.lower), number_text(.0.upper))]
     OutsideLimits(LimitViolation),
 }
 
 impl PositionsError {
-    /// The index of the joint at fault, where it is one.
+    /// Returns the index in [`Chain::joints`] of the joint at fault; `None` where the number of positions is wrong.
     pub fn index(&self) -> Option<usize> {
         match self {
             Self::Length { .. } => None,

@@ -5,8 +5,8 @@ use toml::de::{DeTable, DeValue};
 
 use super::Diagnostic;
 use super::names::{list, quote};
+use super::report::Report;
 use super::size::unbelievable;
-use super::urdf::report::Report;
 use crate::math::evaluate;
 
 /// A value and where it stands.

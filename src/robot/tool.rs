@@ -21,10 +21,10 @@ pub enum ToolError {
     /// A name that a link or a joint has already.
     #[error("the name {} is taken by a link or joint of the robot; give the tool another", names::quote(.name))]
     NameTaken {
-        /// The name.
+        /// The name asked for.
         name: String,
     },
-    /// A pose that no arm reaches, or that is none.
+    /// A pose with a number that is not finite, or beyond any arm.
     #[error("the tool can not be put there: {problem}")]
     Size {
         /// What is wrong with a number of the pose.

@@ -2,18 +2,25 @@
 
 use super::{Joint, Link, Robot};
 
+impl Robot {
+    /// Returns the tree as people draw it: one row per link, depth first, with the joint above the link.
+    pub fn tree(&self) -> TreeRows<'_> {
+        TreeRows::new(self)
+    }
+}
+
 /// One row of the drawn tree: a link, the joint above it and where it stands.
 #[derive(Debug, Clone, Copy)]
 pub struct TreeRow<'a> {
-    /// The link.
+    /// The link of the row.
     pub link: &'a Link,
-    /// The joint above it; `None` for a root.
+    /// The joint above the link; `None` for a root.
     pub joint: Option<&'a Joint>,
-    /// The joint that it follows, when `joint` is a mimic joint.
+    /// The joint that `joint` follows, where that is a mimic joint.
     pub driver: Option<&'a Joint>,
-    /// Number of joints between it and its root.
+    /// Number of joints between the link and its root.
     pub depth: usize,
-    /// Whether it is the last child of its parent (a drawn branch ends here).
+    /// Whether the link is the last child of its parent (a drawn branch ends here).
     pub is_last: bool,
 }
 
@@ -27,7 +34,7 @@ pub struct TreeRows<'a> {
 }
 
 impl<'a> TreeRows<'a> {
-    pub(super) fn new(robot: &'a Robot) -> TreeRows<'a> {
+    fn new(robot: &'a Robot) -> TreeRows<'a> {
         let mut depths = vec![0; robot.links.len()];
         let mut last_child = vec![usize::MAX; robot.links.len()];
         for joint in &robot.joints {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::held::Held;
+use super::lock_position::LockPosition;
 use super::noise_spec::NoiseSpec;
 use super::path_spec::PathSpec;
 use super::real::{Real, exactly};
@@ -134,7 +134,7 @@ pub struct ArmSpec {
     pub calibration: Option<String>,
     /// Joints of the robot that are held still, by name; on the arm's path they count as fixed.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub lock: BTreeMap<String, Held>,
+    pub lock: BTreeMap<String, LockPosition>,
     /// Whether the arm has to move by itself: a joint in common with another arm is then refused rather than shared.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub independent: bool,

@@ -32,7 +32,7 @@ impl fmt::Display for Real {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.expression {
             Some(expression) => f.write_str(expression),
-            None => f.write_str(&crate::math::figure(self.value)),
+            None => f.write_str(&crate::math::number_text(self.value)),
         }
     }
 }

@@ -23,10 +23,10 @@ pub enum TaskKind {
 }
 
 impl TaskKind {
-    /// Every kind, for listings.
+    /// Every kind of task, for listings.
     pub const ALL: [Self; 3] = [Self::PositionXy, Self::Position, Self::Pose];
 
-    /// The name used in scenario files.
+    /// Returns the name of the kind in scenario files.
     pub fn name(self) -> &'static str {
         match self {
             Self::PositionXy => "position-xy",
@@ -35,7 +35,7 @@ impl TaskKind {
         }
     }
 
-    /// Number of components.
+    /// Returns the number of components that the task asks for: 2, 3 or 6.
     pub fn rows(self) -> usize {
         match self {
             Self::PositionXy => 2,

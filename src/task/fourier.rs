@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 /// `p(u) = sum_m a_m (cos 2 pi m u - 1) + b_m sin 2 pi m u`, m = 1, 2, ...; it begins and ends in its origin.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fourier {
-    /// The vectors `a_1, a_2, ...`.
+    /// The coefficients `a_1, a_2, ...` of the cosines \[m\].
     pub cosines: Vec<Vector3<f64>>,
-    /// The vectors `b_1, b_2, ...`.
+    /// The coefficients `b_1, b_2, ...` of the sines \[m\].
     pub sines: Vec<Vector3<f64>>,
 }
 
@@ -37,7 +37,8 @@ pub struct Leaning<P> {
 }
 
 impl<P: Path> Leaning<P> {
-    /// `path`, leaning by `angle` \[rad\] about the world direction `axis` half-way through.
+    /// Returns `path` with its orientation leaning by `angle` \[rad\] about the world direction `axis` half-way
+    /// through.
     pub fn new(path: P, axis: Unit<Vector3<f64>>, angle: f64) -> Self {
         Self { path, axis, angle }
     }

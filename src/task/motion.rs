@@ -55,7 +55,8 @@ impl std::fmt::Debug for Motion {
 }
 
 impl Motion {
-    /// The path shifted so that it begins at the pose `start` \[m\], run through in `duration` \[s\].
+    /// Returns the motion along the path shifted so that it begins at the pose `start` \[m\], run through in `duration`
+    /// \[s\].
     pub fn from_pose(
         path: impl Path + 'static,
         time_law: impl TimeLaw + 'static,
@@ -66,7 +67,8 @@ impl Motion {
         Self::centered(path, time_law, duration, start.translation.vector - beginning, start.rotation)
     }
 
-    /// The path laid with its own origin at `center` \[m\], beginning with the orientation `initial`.
+    /// Returns the motion along the path with its own origin at `center` \[m\], beginning with the orientation
+    /// `initial`.
     pub fn centered(
         path: impl Path + 'static,
         time_law: impl TimeLaw + 'static,
@@ -92,7 +94,7 @@ impl Motion {
         Self { course: Course::Samples { references, sigma } }
     }
 
-    /// The reference at time `t` \[s\]; before the beginning and after the end the motion rests.
+    /// Returns the reference at time `t` \[s\]; before the beginning and after the end the motion is at rest.
     pub fn at(&self, t: f64) -> Reference {
         match &self.course {
             Course::Curve(curve) => curve.at(t),

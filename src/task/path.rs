@@ -29,8 +29,8 @@ pub trait Path: Send + Sync {
     /// The position at progress `u` and its exact derivative, in axes parallel to the world's.
     fn point(&self, u: f64) -> PathPoint;
 
-    /// The rotation from the initial orientation at progress `u`, in world axes, and `d angle / du` as a rotation
-    /// rate \[rad\]. Unless overridden the orientation is held.
+    /// The rotation from the initial orientation at progress `u`, in world axes, and `d angle / du` as a rotation rate
+    /// \[rad\]. Unless overridden the orientation stays the initial one.
     fn turn(&self, _u: f64) -> (Rotation3<f64>, Vector3<f64>) {
         (Rotation3::identity(), Vector3::zeros())
     }
@@ -97,14 +97,15 @@ pub struct Planar<C> {
 }
 
 impl<C: PlanarCurve> Planar<C> {
-    /// The curve in `plane`, turned there by `rotation` \[rad\], over the angles `from` to `from + sweep` \[rad\].
+    /// Returns the curve in `plane`, turned there by `rotation` \[rad\], over the angles `from` to `from + sweep`
+    /// \[rad\].
     pub fn new(curve: C, plane: Plane, rotation: f64, from: f64, sweep: f64) -> Self {
         let (x, y) = plane.directions();
         let (sine, cosine) = rotation.sin_cos();
         Self { curve, x: x * cosine + y * sine, y: y * cosine - x * sine, from, sweep }
     }
 
-    /// The whole curve, once around, in the plane of world x and y.
+    /// Returns the whole curve, once around, in the plane of world x and y.
     pub fn whole(curve: C) -> Self {
         Self::new(curve, Plane::Xy, 0.0, 0.0, std::f64::consts::TAU)
     }
@@ -126,7 +127,8 @@ pub struct Turning<P> {
 }
 
 impl<P: Path> Turning<P> {
-    /// `path`, turning by `angle` \[rad\] about the world direction `axis` in its course.
+    /// Returns `path` with its orientation turning by `angle` \[rad\] about the world direction `axis` from beginning
+    /// to end.
     pub fn new(path: P, axis: Unit<Vector3<f64>>, angle: f64) -> Self {
         Self { path, axis, angle }
     }

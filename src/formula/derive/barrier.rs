@@ -10,14 +10,14 @@ use super::look_ahead::LookAhead;
 /// Whether there are look-ahead formulas of an order with only z = 1 on the unit circle, and why.
 #[derive(Debug, Clone)]
 pub enum BarrierProof {
-    /// There are: this one is.
+    /// There are such formulas: this row is one.
     Witness(Box<Row>),
-    /// There are none: the order fixes this coefficient r_i of R(zeta), and a polynomial with all roots in the left half-plane
-    /// and r_0 = 1 has only positive ones.
+    /// There are none: the order fixes this coefficient r_i of R(zeta) at zero or below, and a polynomial with all
+    /// roots in the left half-plane and r_0 = 1 has only positive coefficients.
     Sign {
-        /// i.
+        /// The index i of the coefficient.
         index: usize,
-        /// r_i, zero or negative.
+        /// The coefficient r_i, zero or negative.
         value: Rational,
     },
     /// There are none: s steps have no formula of any kind beyond order s, as c_(s+1) would have to vanish and does not.
@@ -33,9 +33,9 @@ pub struct Barrier {
     pub steps: usize,
     /// The highest order for which there is a formula with only z = 1 on the unit circle.
     pub order: usize,
-    /// Such a formula.
+    /// A formula of that order.
     pub witness: Row,
-    /// Why there is none of the next order; [`BarrierProof::Open`] would leave that unsaid.
+    /// Why there is no formula of the next order; [`BarrierProof::Open`] where that is not decided.
     pub beyond: BarrierProof,
 }
 

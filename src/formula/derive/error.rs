@@ -2,14 +2,14 @@
 
 use crate::formula::{DefectKind, MAX_STEPS};
 
-/// Why there is no such family, or no such member of it.
+/// Why there is no family of formulas as asked for, or no such member of it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DeriveError {
     /// Fewer than two samples.
     #[error("a formula needs at least two samples, such as 1,0 for x_n+1 and x_n; {found} given")]
     TooFewSamples {
-        /// How many there are.
+        /// How many samples there are.
         found: usize,
     },
     /// No derivative at all.
@@ -22,7 +22,7 @@ pub enum DeriveError {
     Repeated {
         /// `samples` or `derivatives`.
         list: &'static str,
-        /// The offset.
+        /// The offset that is given twice.
         offset: i64,
     },
     /// A derivative newer than every sample.
@@ -33,7 +33,7 @@ pub enum DeriveError {
     DerivativeBeyondNewest {
         /// The derivative's offset.
         offset: i64,
-        /// The newest sample's.
+        /// The newest sample's offset.
         newest: i64,
     },
     /// The oldest instant is too far back.
@@ -54,14 +54,14 @@ pub enum DeriveError {
     Infeasible {
         /// The wanted order.
         order: usize,
-        /// How many conditions it sets.
+        /// How many conditions the order sets.
         conditions: usize,
         /// How many coefficients there are to meet them, one being fixed as the scale.
         unknowns: usize,
         /// The highest order that can be had, `None` where not even order 1 can.
         highest: Option<usize>,
     },
-    /// As many values as parameters are needed.
+    /// Another number of values than the family has parameters.
     #[error(
         "the family has {expected} free parameters and {found} values are given; one value for each is needed"
     )]

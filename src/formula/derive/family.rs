@@ -26,12 +26,12 @@ pub struct DerivedFamily {
     space: AffineSpace,
 }
 
-/// constant + slopes_1 p1 + slopes_2 p2 + ...
+/// A number that depends on the parameters of a family: constant + slopes_1 p1 + slopes_2 p2 + ...
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Affine {
     /// The value where all parameters are zero.
     pub constant: Rational,
-    /// One for each parameter.
+    /// The slopes, one for each parameter.
     pub slopes: Vec<Rational>,
 }
 

@@ -29,7 +29,7 @@ pub enum SearchError {
         order: usize,
         /// Which coefficient of R is fixed at the wrong sign.
         index: usize,
-        /// Its value.
+        /// The value of that coefficient.
         value: String,
         /// The highest order with a strictly zero-stable formula.
         highest: usize,
@@ -49,25 +49,25 @@ pub enum SearchError {
         "denominators of these formulas are multiples of {least}, so none is within the bound of {bound}; raise it"
     )]
     Denominator {
-        /// The bound.
+        /// The largest denominator allowed.
         bound: u32,
-        /// The smallest possible.
+        /// The smallest denominator possible.
         least: String,
     },
-    /// No such objective.
+    /// A word that is no objective.
     #[error("\"{word}\" is no objective{}; known ones: {known}", nearest.as_ref().map_or_else(String::new, |n| format!(" (nearest: {n})")))]
     UnknownObjective {
-        /// The word.
+        /// The word as written.
         word: String,
-        /// The nearest known one.
+        /// The nearest known objective, if one is near.
         nearest: Option<String>,
-        /// All known ones.
+        /// All known objectives.
         known: String,
     },
     /// A weight that is no positive number.
     #[error("the weight \"{text}\" of {word} is no positive number")]
     Weight {
-        /// The objective.
+        /// The word of the objective.
         word: String,
         /// The weight as written.
         text: String,
@@ -75,15 +75,15 @@ pub enum SearchError {
     /// A family that is not known.
     #[error("\"{word}\" is no family; known ones: {known}")]
     UnknownFamily {
-        /// The word.
+        /// The word as written.
         word: String,
-        /// All known ones.
+        /// All known families.
         known: String,
     },
     /// A formula that can not be a measure for others.
     #[error("{id} has no feedback range with a best step, so nothing can be compared with it")]
     NoTarget {
-        /// Its id.
+        /// The id of the formula.
         id: String,
     },
     /// Nothing stable was met.
@@ -94,7 +94,7 @@ pub enum SearchError {
         /// How many starting points there were.
         starts: usize,
     },
-    /// The threads could not be started.
+    /// So many threads could not be started.
     #[error("{0} threads can not be started; ask for fewer")]
     Threads(usize),
 }

@@ -3,7 +3,7 @@
 use crate::formula::{Analysis, MAX_STEPS};
 use crate::math::rational_to_f64;
 
-/// What rows are judged by.
+/// The figures of a row by which a search compares it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figures {
     /// The end of the feedback range; infinity where there is none.
@@ -12,9 +12,9 @@ pub struct Figures {
     pub per_step: f64,
     /// |c|, the error constant.
     pub error_constant: f64,
-    /// The best feedback step.
+    /// The best feedback step h_opt.
     pub h_opt: f64,
-    /// The spectral radius there.
+    /// The spectral radius of the closed loop at h_opt.
     pub r_opt: f64,
     /// The gain of noise in phi' at h_opt, per unit of sigma.
     pub noise: f64,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::figures::Figures;
-use super::run::Found;
+use super::found::Found;
 
 /// Whether `a` is nowhere worse than `b` in h_max, C and r_opt, and better in one of them.
 fn dominates(a: &Figures, b: &Figures) -> bool {

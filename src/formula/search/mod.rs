@@ -18,6 +18,7 @@
 mod error;
 mod evolve;
 mod figures;
+mod found;
 mod front;
 mod judge;
 mod lattice;
@@ -27,7 +28,8 @@ mod space;
 
 pub use error::SearchError;
 pub use figures::Figures;
+pub use found::Found;
 pub use front::{front, front_csv};
 pub use objective::{Objective, Target, Weight};
-pub use run::{Found, Observer, Options, Outcome, Progress, search};
+pub use run::{Observer, Options, Outcome, Progress, search};
 pub use space::Family;

@@ -5,7 +5,7 @@ use crate::formula::Formula;
 use super::error::SearchError;
 use super::figures::Figures;
 
-/// What is to be best.
+/// What a search makes best.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Objective {
@@ -32,18 +32,18 @@ pub enum Objective {
 /// A simple objective and its exponent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Weight {
-    /// The objective.
+    /// The objective that is weighted.
     pub objective: Objective,
-    /// The exponent, positive.
+    /// The exponent of the objective, positive.
     pub weight: f64,
 }
 
 /// The figures of a formula to be surpassed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target {
-    /// Its id.
+    /// The id of the formula.
     pub id: String,
-    /// Its exact figures.
+    /// The exactly decided figures of the formula.
     pub figures: Figures,
 }
 
@@ -136,7 +136,7 @@ impl Objective {
         }
     }
 
-    /// Returns what the merit says in plain figures: the value of what is made large or small.
+    /// Returns the figure that the objective makes large or small.
     pub fn value(&self, figures: &Figures) -> f64 {
         match self {
             Self::Range => figures.h_max,

@@ -4,11 +4,10 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use crate::formula::CheckedRow;
-
 use super::error::SearchError;
 use super::evolve::{Best, Random, evolve};
 use super::figures::Figures;
+use super::found::Found;
 use super::front::front;
 use super::judge::Judge;
 use super::lattice::{Candidate, descend};
@@ -77,31 +76,18 @@ pub struct Progress {
     pub best: Option<f64>,
 }
 
-/// Somebody who watches a search and may end it.
+/// Receives the progress of a search, and may end it.
 pub trait Observer: Sync {
-    /// Says whether to go on; asked often, from several threads.
+    /// Returns whether the search goes on; called often, from several threads.
     fn goes_on(&self) -> bool {
         true
     }
-    /// Hears how far the search has come.
+    /// Receives how far the search has come.
     fn hears(&self, _progress: &Progress) {}
 }
 
-/// Nobody watches.
+/// No observer: the search runs to its end.
 impl Observer for () {}
-
-/// A row that was found, with its exactly decided figures.
-#[derive(Debug, Clone)]
-pub struct Found {
-    /// The row, which declares nothing; [`CheckedRow::to_toml`] writes it with all its facts.
-    pub checked: CheckedRow,
-    /// The figures.
-    pub figures: Figures,
-    /// The merit of the figures (see [`Objective::merit`]).
-    pub merit: f64,
-    /// The denominator of the free coefficients.
-    pub denominator: u32,
-}
 
 /// What a search has found.
 #[derive(Debug, Clone)]
@@ -110,9 +96,9 @@ pub struct Outcome {
     pub bound: f64,
     /// The best row within the denominators, then the simplest ones that are nearly as good.
     pub rows: Vec<Found>,
-    /// Rows that none of the others met dominates in (h_max, C, r_opt); empty unless asked for.
+    /// The Pareto front in (h_max, C, r_opt) of the rows that were met; empty unless asked for.
     pub front: Vec<Found>,
-    /// Whether the search came to its end; else time or the observer cut it short.
+    /// Whether the search came to its end; otherwise time or the observer ended it early.
     pub complete: bool,
 }
 
@@ -125,7 +111,7 @@ const MOST_DECIDED: usize = 24;
 /// What the merit in doubles may promise too much.
 const AGREEMENT: f64 = 2e-3;
 
-/// Searches.
+/// Returns the rows that are best at an objective, exactly decided, with the best value in real numbers.
 ///
 /// # Errors
 /// [`SearchError`] when there is nothing to search or nothing was found.

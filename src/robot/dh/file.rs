@@ -2,8 +2,8 @@
 
 use super::table::{DhConvention, DhError, DhRow, DhTable, MAX_ROWS, Names};
 use crate::robot::names::{self, list, quote};
+use crate::robot::report::Report;
 use crate::robot::toml_table::{Entries, Value, read_toml, real, wrong_type};
-use crate::robot::urdf::report::Report;
 use crate::robot::{JointKind, Limits};
 
 const KEYS: [&str; 7] = ["name", "base", "convention", "joint", "planar", "limits", "velocity"];

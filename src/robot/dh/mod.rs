@@ -1,4 +1,4 @@
-//! Denavit-Hartenberg tables, as papers and data sheets print them: a second door into [`Robot`](super::Robot).
+//! Denavit-Hartenberg tables, as papers and data sheets print them: another way to a [`Robot`](super::Robot).
 
 mod file;
 mod table;

@@ -8,10 +8,10 @@ use thiserror::Error;
 use crate::robot::size::MAX_SIZE;
 use crate::robot::{Diagnostic, Joint, JointKind, Limits, Link, MAX_JOINTS, Robot, diagnostic, names};
 
-/// Most rows of a table: in the standard custom each makes two joints.
+/// Most rows of a table: in the standard convention each makes two joints.
 pub(super) const MAX_ROWS: usize = MAX_JOINTS / 2;
 
-/// Which of the two customs the rows follow.
+/// Which of the two Denavit-Hartenberg conventions the rows follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DhConvention {
     /// Denavit and Hartenberg (1955), Paul, Spong, Universal Robots: frame i at the far end of link i,
@@ -22,7 +22,7 @@ pub enum DhConvention {
     Modified,
 }
 
-/// One row of a table.
+/// One row of a Denavit-Hartenberg table: a joint and the link that it carries.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DhRow {
     /// Name of the joint.
@@ -39,7 +39,7 @@ pub struct DhRow {
     pub d: f64,
     /// Angle about z \[rad\].
     pub theta: f64,
-    /// Limits of `q`; infinite where they are not known.
+    /// Limits of the joint position `q`; infinite where they are not known.
     pub limits: Limits,
 }
 
@@ -72,41 +72,41 @@ pub struct DhTable {
     pub name: String,
     /// Name of the link that the first row starts from.
     pub base: String,
-    /// The custom.
+    /// Which convention the rows follow.
     pub convention: DhConvention,
     /// The rows from the base outwards.
     pub rows: Vec<DhRow>,
 }
 
-/// Why a table gives no robot.
+/// Why a Denavit-Hartenberg table gives no robot.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DhError {
     /// The text is no table: every finding, by place.
     #[error("{}", diagnostic::summary(.0))]
     Text(Vec<Diagnostic>),
-    /// One row can not be meant.
+    /// One row is impossible: its kind, its numbers, its limits or its names.
     #[error("row {row} of the table: {problem}")]
     Row {
-        /// The row, from 1.
+        /// Number of the row, from 1.
         row: usize,
-        /// What is wrong with it.
+        /// What is wrong with the row.
         problem: String,
     },
-    /// The name of the first link can not be one.
+    /// The name of the first link is none that a link can have.
     #[error("`base` of the table {problem}")]
     Base {
-        /// What is wrong with it.
+        /// What is wrong with the name.
         problem: String,
     },
-    /// No row moves, or there are too many.
+    /// No row moves, or there are too many rows.
     #[error(
         "the table has {rows} rows, {moving} of which move; a robot needs one that moves and at most {MAX_ROWS} rows"
     )]
     Size {
         /// How many rows there are.
         rows: usize,
-        /// How many of them move.
+        /// How many of the rows move.
         moving: usize,
     },
 }
@@ -215,12 +215,13 @@ fn placed(xyz: Vector3<f64>, turn: Rotation3<f64>) -> IsometryMatrix3<f64> {
 impl Robot {
     /// Returns the robot that a Denavit-Hartenberg table describes.
     ///
-    /// Each row's frame is a link of the row's name. In the standard custom, where that frame is at the far end of the
+    /// Each row's frame is a link of the row's name. In the standard convention, where that frame is at the far end of
+    /// the
     /// body, the body's frame at its joint is a link too, named after it with `_axis`.
     ///
     /// # Errors
-    /// [`DhError`]: no row that moves, too many rows, a name used twice or that URDF can not hold, or a row with numbers that
-    /// can not be meant.
+    /// [`DhError`]: no row that moves, too many rows, a name used twice or that URDF can not hold, or an impossible
+    /// row.
     pub fn from_dh(table: &DhTable) -> Result<Robot, DhError> {
         let moving = table.rows.iter().filter(|row| row.kind.is_movable()).count();
         if moving == 0 || table.rows.len() > MAX_ROWS {

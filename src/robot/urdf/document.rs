@@ -4,20 +4,11 @@ use roxmltree::{Document, Error, Namespace, Node};
 
 use super::element::{self, Known};
 use super::outline::{self, Outline, Stop, Tag};
-use super::report::Report;
+use super::version::Version;
 use super::{MAX_DEPTH, UrdfOptions, encoding, graph, joint, link, values};
 use crate::robot::Robot;
 use crate::robot::names::quote;
-
-/// The version of URDF that a file is written in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Version {
-    V1_0,
-    /// Adds `quat_xyzw`.
-    V1_1,
-    /// A limit that is not given is infinite.
-    V1_2,
-}
+use crate::robot::report::Report;
 
 /// Reads a robot, or reports at least one error.
 pub(super) fn read(text: &str, options: &UrdfOptions, report: &mut Report<'_>) -> Option<Robot> {

@@ -2,8 +2,8 @@
 
 use roxmltree::{Attribute, Node};
 
-use super::report::Report;
 use crate::robot::names::{list, quote};
+use crate::robot::report::Report;
 
 /// An element and the attributes that URDF gives it.
 #[derive(Clone, Copy)]

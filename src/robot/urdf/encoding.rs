@@ -1,7 +1,7 @@
 //! Bytes to text: UTF-8 only, and a sentence that names what else it is.
 
 use super::UrdfError;
-use super::places::Places;
+use crate::robot::places::Places;
 
 /// Returns the bytes as text.
 pub(super) fn decode(bytes: &[u8]) -> Result<&str, UrdfError> {

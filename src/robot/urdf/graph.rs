@@ -4,13 +4,13 @@ use std::collections::HashMap;
 
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 
-use super::joint::RawJoint;
 use super::link::RawLink;
 use super::mimic;
-use super::report::Report;
+use super::raw_joint::RawJoint;
 use crate::robot::displacement::displacement;
 use crate::robot::model::Stray;
 use crate::robot::names::{quote, short_list};
+use crate::robot::report::Report;
 use crate::robot::{Defect, Joint, JointKind, Limits, Link, Mimic, Robot};
 
 /// The joint between two links, by index.
@@ -344,7 +344,7 @@ fn limits(raw: &RawJoint) -> Limits {
 }
 
 fn stray(raw: RawJoint) -> Stray {
-    let name_of = |end: Option<super::joint::Reference>| end.map(|end| end.name).unwrap_or_default();
+    let name_of = |end: Option<super::raw_joint::Reference>| end.map(|end| end.name).unwrap_or_default();
     let fallback = || Defect { reason: "it has no place in the tree".to_owned(), line: 1, column: 1 };
     Stray {
         name: raw.name,

@@ -5,15 +5,17 @@ use std::fmt::Write;
 use nalgebra::{Quaternion, UnitQuaternion};
 use roxmltree::{Attribute, Node};
 
-use super::document::Version;
 use super::element::{self, Known};
 use super::limit;
 use super::link::name_of;
-use super::report::Report;
+use super::raw_joint::{RawJoint, Reference};
+use super::reader::Reader;
+use super::version::Version;
 use super::{MAX_JOINTS, UrdfOptions, number};
-use crate::math::figure;
+use crate::math::number_text;
+use crate::robot::JointKind;
 use crate::robot::names::{list, quote};
-use crate::robot::{Defect, JointKind, unbelievable};
+use crate::robot::report::Report;
 
 /// How far a vector's length may be from one before that is worth a note.
 const UNIT_TOLERANCE: f64 = 1e-3;
@@ -21,56 +23,6 @@ const UNIT_TOLERANCE: f64 = 1e-3;
 /// The child elements that URDF gives a joint.
 const CHILDREN: [&str; 9] =
     ["origin", "parent", "child", "axis", "limit", "mimic", "calibration", "dynamics", "safety_controller"];
-
-/// A name that the file uses, and where.
-pub(super) struct Reference {
-    pub(super) name: String,
-    pub(super) offset: usize,
-}
-
-/// A joint as the file gives it.
-pub(super) struct RawJoint {
-    /// Empty when the file gives none.
-    pub(super) name: String,
-    pub(super) offset: usize,
-    pub(super) kind: Option<JointKind>,
-    pub(super) parent: Option<Reference>,
-    pub(super) child: Option<Reference>,
-    pub(super) mimic: Option<Reference>,
-    /// The orientation, when it is given as a quaternion: urdf-rs turns one into angles and loses up to
-    /// 4.5e-3 rad near a pitch of 90 degrees, so it is kept from it.
-    pub(super) quaternion: Option<UnitQuaternion<f64>>,
-    /// The elements that carry values, written for urdf-rs.
-    pub(super) values: String,
-    /// What urdf-rs read.
-    pub(super) read: Option<urdf_rs::Joint>,
-    pub(super) defect: Option<Defect>,
-}
-
-impl RawJoint {
-    /// How messages call it.
-    pub(super) fn label(&self) -> String {
-        if self.name.is_empty() { "a joint".to_owned() } else { format!("joint {}", quote(&self.name)) }
-    }
-
-    /// Reports an error, which makes the joint defective.
-    pub(super) fn fail(&mut self, offset: usize, reason: String, report: &mut Report<'_>) {
-        report.error(offset, format!("{}: {reason}", self.label()));
-        self.defect.get_or_insert_with(|| report.defect(offset, reason));
-    }
-
-    pub(super) fn warn(&self, offset: usize, reason: &str, report: &mut Report<'_>) {
-        report.warning(offset, format!("{}: {reason}", self.label()));
-    }
-
-    pub(super) fn note(&self, offset: usize, reason: &str, report: &mut Report<'_>) {
-        report.note(offset, format!("{}: {reason}", self.label()));
-    }
-
-    pub(super) fn is_movable(&self) -> bool {
-        self.kind.is_some_and(JointKind::is_movable)
-    }
-}
 
 /// Reads all joints; `None` when there are too many.
 pub(super) fn read_joints(
@@ -89,37 +41,7 @@ pub(super) fn read_joints(
     Some(joints.map(|node| Reader::new(node, version, options, report).read()).collect())
 }
 
-/// Reads one joint.
-pub(super) struct Reader<'r, 'a, 'i, 't> {
-    node: Node<'a, 'i>,
-    pub(super) version: Version,
-    pub(super) options: &'r UrdfOptions,
-    pub(super) report: &'r mut Report<'t>,
-    pub(super) joint: RawJoint,
-}
-
-impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
-    fn new(
-        node: Node<'a, 'i>,
-        version: Version,
-        options: &'r UrdfOptions,
-        report: &'r mut Report<'t>,
-    ) -> Reader<'r, 'a, 'i, 't> {
-        let joint = RawJoint {
-            name: String::new(),
-            offset: element::offset(node),
-            kind: None,
-            parent: None,
-            child: None,
-            mimic: None,
-            quaternion: None,
-            values: String::new(),
-            read: None,
-            defect: None,
-        };
-        Reader { node, version, options, report, joint }
-    }
-
+impl<'a, 'i> Reader<'_, 'a, 'i, '_> {
     fn read(mut self) -> RawJoint {
         match name_of(self.node) {
             Ok(name) => name.clone_into(&mut self.joint.name),
@@ -142,37 +64,6 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
             );
         }
         self.joint
-    }
-
-    pub(super) fn fail(&mut self, offset: usize, reason: impl Into<String>) {
-        self.joint.fail(offset, reason.into(), self.report);
-    }
-
-    pub(super) fn warn(&mut self, offset: usize, reason: &str) {
-        self.joint.warn(offset, reason, self.report);
-    }
-
-    pub(super) fn note(&mut self, offset: usize, reason: &str) {
-        self.joint.note(offset, reason, self.report);
-    }
-
-    pub(super) fn known_attributes(&mut self, node: Node<'a, 'i>, known: Known) {
-        for (place, cause) in element::check_attributes(node, known, self.options.strict, self.report) {
-            self.fail(place, cause);
-        }
-    }
-
-    /// The first child element of that name; a second one is reported and ignored, as urdfdom does.
-    pub(super) fn child(&mut self, known: Known) -> Option<Node<'a, 'i>> {
-        let mut found = element::children_named(self.node, known.element);
-        let (first, second) = (found.next()?, found.next());
-        if let Some(second) = second {
-            let line = self.report.line(element::offset(first));
-            let cause = format!("it has a second `<{}>`; the first one (line {line}) is used", known.element);
-            self.warn(element::offset(second), &cause);
-        }
-        self.known_attributes(first, known);
-        Some(first)
     }
 
     fn misspelt_children(&mut self) {
@@ -295,7 +186,11 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
         if (length - 1.0).abs() > UNIT_TOLERANCE {
             self.note(
                 place,
-                &format!("its axis {} has length {}; normalised", quote(attribute.value()), figure(length)),
+                &format!(
+                    "its axis {} has length {}; normalised",
+                    quote(attribute.value()),
+                    number_text(length)
+                ),
             );
         }
         let _ = write!(self.joint.values, "<axis xyz=\"{text}\"/>");
@@ -323,42 +218,6 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
         let values = format!("<mimic joint=\"driver\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>");
         self.joint.values.push_str(&values);
         self.joint.mimic = Some(Reference { name: target.value().to_owned(), offset: target.range().start });
-    }
-
-    /// As [`Self::vector`], of lengths or angles that an arm may have.
-    fn sizes(&mut self, element: &str, attribute: &Attribute<'a, 'i>) -> Option<String> {
-        let text = self.vector::<3>(element, attribute)?;
-        let values = number::vector::<3>(&text).unwrap_or_default();
-        if let Some(cause) = values.into_iter().find_map(unbelievable) {
-            let cause = format!("`{}` of `<{element}>`: {cause}", attribute.name());
-            self.fail(attribute.range().start, cause);
-            return None;
-        }
-        Some(text)
-    }
-
-    /// Returns the checked tokens of a vector, separated by single blanks.
-    fn vector<const N: usize>(&mut self, element: &str, attribute: &Attribute<'a, 'i>) -> Option<String> {
-        match number::vector::<N>(attribute.value()) {
-            Ok(_) => Some(number::tokens(attribute.value()).collect::<Vec<_>>().join(" ")),
-            Err(cause) => {
-                let cause = format!("`{}` of `<{element}>`: {cause}", attribute.name());
-                self.fail(attribute.range().start, cause);
-                None
-            }
-        }
-    }
-
-    /// Returns the checked token of a finite number, when the attribute is there.
-    fn scalar(&mut self, element: &str, node: Node<'a, 'i>, name: &str) -> Option<String> {
-        let attribute = element::attribute(node, name)?;
-        match number::finite(attribute.value()) {
-            Ok(_) => Some(attribute.value().trim().to_owned()),
-            Err(cause) => {
-                self.fail(attribute.range().start, format!("`{name}` of `<{element}>`: {cause}"));
-                None
-            }
-        }
     }
 }
 

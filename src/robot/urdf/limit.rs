@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use roxmltree::Node;
 
-use super::document::Version;
 use super::element::{self, Known};
-use super::joint::Reader;
 use super::number;
+use super::reader::Reader;
+use super::version::Version;
 use crate::robot::JointKind;
 use crate::robot::names::quote;
 

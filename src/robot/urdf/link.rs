@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use roxmltree::Node;
 
 use super::element::{self, Known};
-use super::report::Report;
 use super::{MAX_JOINTS, UrdfOptions, number};
 use crate::robot::Defect;
 use crate::robot::names::{LONGEST_NAME, quote};
+use crate::robot::report::Report;
 
 /// The shapes that a `<geometry>` may hold.
 const SHAPES: [&str; 5] = ["box", "cylinder", "capsule", "sphere", "mesh"];

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::joint::RawJoint;
-use super::report::Report;
+use super::raw_joint::RawJoint;
 use crate::robot::names::{quote, short_list};
+use crate::robot::report::Report;
 use crate::robot::{JointKind, Mimic, unbelievable};
 
 /// How a joint moves once mimic chains are folded.

@@ -5,8 +5,8 @@
 
 use std::fmt::Write;
 
-use super::joint::RawJoint;
-use super::report::Report;
+use super::raw_joint::RawJoint;
+use crate::robot::report::Report;
 
 /// Fills in `read` of every joint that is sound so far.
 pub(super) fn read_values(joints: &mut [RawJoint], report: &mut Report<'_>) {

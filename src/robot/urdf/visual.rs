@@ -13,8 +13,27 @@ use crate::robot::visual::{Colour, Shape, Visual, Visuals};
 /// Most shapes that are read.
 const MOST: usize = 20_000;
 
+impl Visuals {
+    /// Returns the looks that a URDF text gives its links; what can not be read is left out, with a note.
+    ///
+    /// ```
+    /// use kinstep::robot::{Shape, Visuals};
+    /// let looks = Visuals::from_urdf(
+    ///     r#"<robot name="ball"> <link name="ball">
+    ///          <visual> <geometry> <sphere radius="0.1"/> </geometry> </visual>
+    ///          <visual> <geometry> <sphere radius="-1"/> </geometry> </visual>
+    ///        </link> </robot>"#,
+    /// );
+    /// assert_eq!(looks.visuals[0].shape, Shape::Sphere { radius: 0.1 });
+    /// assert_eq!(looks.notes, ["link `ball`: a shape whose `radius` is -1"]);
+    /// ```
+    pub fn from_urdf(text: &str) -> Self {
+        read(text)
+    }
+}
+
 /// Reads the looks of all links.
-pub(in crate::robot) fn read(text: &str) -> Visuals {
+fn read(text: &str) -> Visuals {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut looks = Visuals::default();
     if text.len() > MAX_BYTES {

@@ -7,90 +7,11 @@ mod collada;
 mod find;
 mod mesh;
 mod obj;
+mod read;
 mod reduce;
 mod stl;
-
-use nalgebra::IsometryMatrix3;
+mod visuals;
 
 pub use find::find_mesh;
 pub use mesh::{Mesh, MeshError, MeshPart, Triangle};
-
-/// Red, green, blue and opacity, each from 0 to 1.
-pub type Colour = [f64; 4];
-
-/// The shape of a visual, in its own axes.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    /// A box about its middle.
-    Box {
-        /// Lengths of its sides \[m\].
-        sides: [f64; 3],
-    },
-    /// A cylinder along z, about its middle.
-    Cylinder {
-        /// \[m\]
-        radius: f64,
-        /// \[m\]
-        length: f64,
-    },
-    /// A cylinder along z with half spheres on its ends.
-    Capsule {
-        /// \[m\]
-        radius: f64,
-        /// Length of the cylinder \[m\].
-        length: f64,
-    },
-    /// A sphere about its middle.
-    Sphere {
-        /// \[m\]
-        radius: f64,
-    },
-    /// A mesh in a file.
-    Mesh {
-        /// How the URDF names the file ([`find_mesh`]).
-        reference: String,
-        /// Factors along its axes.
-        scale: [f64; 3],
-    },
-}
-
-/// One shape of a link.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Visual {
-    /// The link's name.
-    pub link: String,
-    /// Pose of the shape in the link.
-    pub origin: IsometryMatrix3<f64>,
-    /// What it is.
-    pub shape: Shape,
-    /// Its colour, where the URDF gives one.
-    pub colour: Option<Colour>,
-}
-
-/// What the links of a robot look like.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Visuals {
-    /// The shapes, in the order of the file.
-    pub visuals: Vec<Visual>,
-    /// What was left out, and why.
-    pub notes: Vec<String>,
-}
-
-impl Visuals {
-    /// Returns the looks that a URDF text gives its links; what can not be read is left out, with a note.
-    ///
-    /// ```
-    /// use kinstep::robot::{Shape, Visuals};
-    /// let looks = Visuals::from_urdf(
-    ///     r#"<robot name="ball"> <link name="ball">
-    ///          <visual> <geometry> <sphere radius="0.1"/> </geometry> </visual>
-    ///          <visual> <geometry> <sphere radius="-1"/> </geometry> </visual>
-    ///        </link> </robot>"#,
-    /// );
-    /// assert_eq!(looks.visuals[0].shape, Shape::Sphere { radius: 0.1 });
-    /// assert_eq!(looks.notes, ["link `ball`: a shape whose `radius` is -1"]);
-    /// ```
-    pub fn from_urdf(text: &str) -> Self {
-        super::urdf::read_visuals(text)
-    }
-}
+pub use visuals::{Colour, Shape, Visual, Visuals};

@@ -186,7 +186,7 @@ impl<'a> PlanFigures<'a> {
     /// What made the plan, as a caption has it.
     fn made_by(&self) -> String {
         let Some(about) = &self.recording.trajectory.about else { return String::new() };
-        let (sigma, h) = (crate::math::figure(about.sigma), short(about.h));
+        let (sigma, h) = (crate::math::number_text(about.sigma), short(about.h));
         // Blanks that do not break keep quantities whole.
         format!(
             "Formula\u{a0}{}, \u{3c3}\u{a0}=\u{a0}{sigma}\u{a0}s, h\u{a0}=\u{a0}{h}, start\u{a0}{}.",

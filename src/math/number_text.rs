@@ -1,14 +1,14 @@
 //! Numbers in sentences.
 
 /// Returns a number as people write it: `0.4`, `2`, and with an exponent (`1e300`, `2.5e-12`) where it is very large or small.
-pub(crate) fn figure(value: f64) -> String {
+pub(crate) fn number_text(value: f64) -> String {
     let text = format!("{value:?}");
     text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::figure;
+    use super::number_text;
 
     #[test]
     fn a_number_takes_no_three_hundred_digits() {
@@ -21,7 +21,7 @@ mod tests {
             (f64::NAN, "NaN"),
             (f64::INFINITY, "inf"),
         ] {
-            assert_eq!(figure(value), text);
+            assert_eq!(number_text(value), text);
         }
     }
 }

@@ -1,13 +1,13 @@
 //! The findings of one reading, in one place.
 
 use super::places::Places;
-use crate::robot::{Defect, Diagnostic, Severity, names};
+use super::{Defect, Diagnostic, Severity, names};
 
 /// How many nearest-name searches one report pays for; a file with more misspellings than that is hopeless.
 const SUGGESTIONS: usize = 20;
 
 /// Collects findings by byte offset.
-pub(in crate::robot) struct Report<'a> {
+pub(super) struct Report<'a> {
     text: &'a str,
     places: Places<'a>,
     found: Vec<(usize, Severity, String)>,
@@ -15,45 +15,41 @@ pub(in crate::robot) struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    pub(in crate::robot) fn new(text: &'a str) -> Report<'a> {
+    pub(super) fn new(text: &'a str) -> Report<'a> {
         Report { text, places: Places::new(text), found: Vec::new(), suggestions_left: SUGGESTIONS }
     }
 
-    pub(in crate::robot) fn error(&mut self, offset: usize, message: impl Into<String>) {
+    pub(super) fn error(&mut self, offset: usize, message: impl Into<String>) {
         self.found.push((offset, Severity::Error, message.into()));
     }
 
-    pub(in crate::robot) fn warning(&mut self, offset: usize, message: impl Into<String>) {
+    pub(super) fn warning(&mut self, offset: usize, message: impl Into<String>) {
         self.found.push((offset, Severity::Warning, message.into()));
     }
 
-    pub(in crate::robot) fn note(&mut self, offset: usize, message: impl Into<String>) {
+    pub(super) fn note(&mut self, offset: usize, message: impl Into<String>) {
         self.found.push((offset, Severity::Note, message.into()));
     }
 
     /// The line of an offset, to be named in a message.
-    pub(in crate::robot) fn line(&self, offset: usize) -> usize {
+    pub(super) fn line(&self, offset: usize) -> usize {
         self.places.line(offset)
     }
 
     /// The name, with its prefix, that the file writes at an offset.
-    pub(in crate::robot) fn written_name(&self, offset: usize) -> &'a str {
+    pub(super) fn written_name(&self, offset: usize) -> &'a str {
         let rest = self.text.get(offset..).unwrap_or_default();
         let ends = |c: char| c.is_ascii_whitespace() || matches!(c, '=' | '/' | '>');
         rest.split(ends).next().unwrap_or_default()
     }
 
-    pub(in crate::robot) fn defect(&self, offset: usize, reason: String) -> Defect {
+    pub(super) fn defect(&self, offset: usize, reason: String) -> Defect {
         let (line, column) = self.places.at(offset);
         Defect { reason, line, column }
     }
 
     /// Returns "; did you mean ...?" for a name that is not known.
-    pub(in crate::robot) fn suggestion<'n>(
-        &mut self,
-        name: &str,
-        known: impl IntoIterator<Item = &'n str>,
-    ) -> String {
+    pub(super) fn suggestion<'n>(&mut self, name: &str, known: impl IntoIterator<Item = &'n str>) -> String {
         if self.suggestions_left == 0 {
             return String::new();
         }
@@ -62,7 +58,7 @@ impl<'a> Report<'a> {
     }
 
     /// Returns the findings by place.
-    pub(in crate::robot) fn finish(mut self) -> Vec<Diagnostic> {
+    pub(super) fn finish(mut self) -> Vec<Diagnostic> {
         self.found.sort_by_key(|&(offset, severity, _)| (offset, std::cmp::Reverse(severity)));
         let places = &self.places;
         self.found
