@@ -6,7 +6,7 @@
 
 #![allow(clippy::print_stdout)]
 
-use kinstep::study::{Ladder, OrderReport, OrderStudy, Orders, Problem, Rung, Samples};
+use kinstep_study::{Ladder, OrderReport, OrderStudy, Orders, Problem, Rung, Samples};
 use std::convert::Infallible;
 
 /// One step of Heun's method; `slip` takes the second slope at the old time.
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kinstep::{assert_confirmed, assert_order};
+    use kinstep_study::{assert_confirmed, assert_order};
 
     #[test]
     fn my_method_has_order_two() {

@@ -65,7 +65,7 @@ pub enum PlannerError {
     /// The feedback step lies outside the range in which the loop is stable.
     #[error(
         "h = {shown} lies outside the feedback range {range} of formula `{formula}`: the closed loop would not be stable there; choose h inside the range, or allow unstable runs",
-        shown = crate::math::figure(*h)
+        shown = crate::math::number_text(*h)
     )]
     StepSizeOutsideRange {
         /// The feedback step.
@@ -112,7 +112,7 @@ pub enum PlannerError {
     /// Two arms move a joint in common, and start it at different positions.
     #[error(
         "arms `{arm}` and `{other}` share joint `{joint}`, which starts at {} in the one and at {} in the other; give it one position",
-        crate::math::figure(*.value), crate::math::figure(*.other_value)
+        crate::math::number_text(*.value), crate::math::number_text(*.other_value)
     )]
     SharedStart {
         /// The joint.

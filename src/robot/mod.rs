@@ -18,8 +18,8 @@ mod follow;
 mod kinematics;
 mod lock;
 mod model;
-mod names;
-pub(crate) mod nearby;
+pub mod names;
+pub mod nearby;
 mod path;
 mod poses;
 mod positions;
@@ -42,13 +42,10 @@ pub use lock::LockError;
 pub use model::{Defect, Joint, JointKind, Limits, Link, Mimic, Robot};
 pub use path::ChainError;
 pub use positions::PositionsError;
+pub use size::unbelievable;
 pub use tool::ToolError;
 pub use tree::{TreeRow, TreeRows};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, ReadError, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 
-#[cfg(feature = "cli")]
-pub(crate) use names::{is_odd, quote};
-pub(crate) use names::{printable, shown};
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};
-pub(crate) use size::unbelievable;

@@ -2,7 +2,7 @@
 
 use super::names::{printable, quote};
 use super::{Chain, LimitViolation};
-use crate::math::figure;
+use crate::math::number_text;
 use thiserror::Error;
 
 /// Why joint positions do not fit a chain.
@@ -30,7 +30,7 @@ pub enum PositionsError {
         value: f64,
     },
     /// One lies outside the joint's limits.
-    #[error("joint {} would be at {}, outside its limits [{}, {}]", quote(&.0.joint), figure(.0.value), figure(.0.lower), figure(.0.upper))]
+    #[error("joint {} would be at {}, outside its limits [{}, {}]", quote(&.0.joint), number_text(.0.value), number_text(.0.lower), number_text(.0.upper))]
     OutsideLimits(LimitViolation),
 }
 

@@ -11,7 +11,7 @@ use super::limit;
 use super::link::name_of;
 use super::report::Report;
 use super::{MAX_JOINTS, UrdfOptions, number};
-use crate::math::figure;
+use crate::math::number_text;
 use crate::robot::names::{list, quote};
 use crate::robot::{Defect, JointKind, unbelievable};
 
@@ -295,7 +295,11 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
         if (length - 1.0).abs() > UNIT_TOLERANCE {
             self.note(
                 place,
-                &format!("its axis {} has length {}; normalised", quote(attribute.value()), figure(length)),
+                &format!(
+                    "its axis {} has length {}; normalised",
+                    quote(attribute.value()),
+                    number_text(length)
+                ),
             );
         }
         let _ = write!(self.joint.values, "<axis xyz=\"{text}\"/>");
