@@ -1,7 +1,7 @@
 //! Every file of tests/bad_input/urdf, read and compared with the findings written beside it.
 //!
 //! `NAME.expected` holds `read` or `refused` and then every finding as `line:column: severity: message`. After a
-//! change of wording, `KINSTEP_WRITE_EXPECTED=1 cargo test --test robot_bad_input` writes the files anew; look at
+//! change of wording, `KINSTEP_WRITE_EXPECTED=1 cargo test --test robot bad_input` writes the files anew; look at
 //! the difference before committing it.
 
 use std::fmt::Write;

@@ -4,7 +4,7 @@
 //! ones. The long run:
 //!
 //! ```text
-//! PROPTEST_CASES=2000 PROPTEST_RNG_SEED=1 cargo test --all-features --test order_property -- --nocapture
+//! PROPTEST_CASES=2000 PROPTEST_RNG_SEED=1 cargo test --all-features --test order property -- --nocapture
 //! ```
 #![allow(
     clippy::unwrap_used,
