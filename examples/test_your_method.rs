@@ -1,8 +1,8 @@
 //! Tests the order of an integrator of one's own: Heun's method, and the same with a slip of the pen.
 //!
 //! `cargo run --example test_your_method` shows what a study says of both. In a crate of your own, put
-//! `kinstep-study = { version = "0.1", default-features = false }` under `[dev-dependencies]` and the two tests below into
-//! `tests/`; with the feature `proptest` there are strategies for random formulas, arms and paths besides.
+//! `kinstep-study = "0.1"` under `[dev-dependencies]` and the two tests below into `tests/`; with the feature `proptest` there are
+//! strategies for random formulas, arms and paths besides.
 
 #![allow(clippy::print_stdout)]
 
