@@ -8,9 +8,9 @@ use std::error::Error;
 use std::path::Path;
 
 use kinstep::formula::FormulaTable;
-use kinstep::report::figure::{Figure, PlanFigures};
-use kinstep::scenario::ScenarioText;
-use kinstep::trajectory::{About, Recording, Trajectory};
+use kinstep_files::scenario::ScenarioText;
+use kinstep_files::trajectory::{About, Recording, Trajectory};
+use kinstep_report::figure::{Figure, PlanFigures};
 
 /// The scenarios, and which of their pictures are shown.
 const SHOWN: [(&str, &str, &[&str]); 2] = [

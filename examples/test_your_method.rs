@@ -1,12 +1,12 @@
 //! Tests the order of an integrator of one's own: Heun's method, and the same with a slip of the pen.
 //!
 //! `cargo run --example test_your_method` shows what a study says of both. In a crate of your own, put
-//! `kinstep = { version = "0.1", default-features = false }` under `[dev-dependencies]` and the two tests below into
-//! `tests/`; with the feature `proptest` there are strategies for random formulas, arms and paths besides.
+//! `kinstep-study = "0.1"` under `[dev-dependencies]` and the two tests below into `tests/`; with the feature `proptest` there are
+//! strategies for random formulas, arms and paths besides.
 
 #![allow(clippy::print_stdout)]
 
-use kinstep::study::{Ladder, OrderReport, OrderStudy, Orders, Problem, Rung, Samples};
+use kinstep_study::{Ladder, OrderReport, OrderStudy, Orders, Problem, Rung, Samples};
 use std::convert::Infallible;
 
 /// One step of Heun's method; `slip` takes the second slope at the old time.
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kinstep::{assert_confirmed, assert_order};
+    use kinstep_study::{assert_confirmed, assert_order};
 
     #[test]
     fn my_method_has_order_two() {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fuzzes the readers for a bounded time, from the files of tests/bad_input, robots and examples:
+# Fuzzes the readers for a bounded time, from the files of tests, robots and examples:
 #
 #   scripts/fuzz.sh                   every target for 20 s
 #   scripts/fuzz.sh 300 urdf rows     these targets for 300 s each
@@ -16,7 +16,7 @@ if [[ "${first##*/}" == rustc ]]; then
         -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table
         -Cllvm-args=-sanitizer-coverage-trace-compares)
     case " $* " in
-        *" --crate-name kinstep "*) exec "$@" "${instrumented[@]}" ;;
+        *" --crate-name kinstep "* | *" --crate-name kinstep_files "* | *" --crate-name kinstep_study "*) exec "$@" "${instrumented[@]}" ;;
         *) exec "$@" ;;
     esac
 fi
@@ -35,8 +35,8 @@ cp Cargo.lock fuzz/Cargo.lock
 seeds() {
     case $1 in
         urdf) find robots tests/bad_input/urdf tests/data -name '*.urdf' ;;
-        table) find examples/dh tests/bad_input/table tests/bad_input/calibration -name '*.toml' ;;
-        scenario) find examples tests/bad_input/scenario -maxdepth 1 -name '*.toml' ;;
+        table) find examples/dh crates/cli/tests/bad_input/{table,calibration} -name '*.toml' ;;
+        scenario) find examples crates/cli/tests/bad_input/scenario -maxdepth 1 -name '*.toml' ;;
         rows) find examples/my_formula.toml tests/bad_input/formula -name '*.toml' ;;
         *) echo "there is no target $1; there are urdf, table, scenario and rows" >&2 && exit 2 ;;
     esac

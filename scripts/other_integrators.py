@@ -2,7 +2,7 @@
 """Runs integrators of SciPy and SUNDIALS at a fixed gap and writes their samples for the order studies.
 
     pip install scipy scikit-sundae
-    python scripts/other_integrators.py > tests/data/other_integrators.json
+    python scripts/other_integrators.py > crates/study/tests/data/other_integrators.json
 
 The problem is x' = x cos t, x(0) = 1 on [0, 6]; its solution is exp(sin t). Tolerances are so loose that no step is
 ever refused, and the gap is held by its bounds: what remains is the fixed method. Steps start at the exact state.

@@ -10,17 +10,9 @@ pub mod inverse;
 pub mod law;
 pub mod math;
 pub mod planner;
-pub mod report;
 pub mod robot;
-pub mod scenario;
 pub mod scheme;
-pub mod study;
 pub mod task;
-pub mod trajectory;
-
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod cli;
 
 /// The linear algebra of the public interface: poses are [`nalgebra::IsometryMatrix3`], twists [`nalgebra::Vector6`].
 pub use nalgebra;

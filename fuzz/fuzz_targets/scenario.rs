@@ -4,8 +4,8 @@
 
 use kinstep::formula::FormulaTable;
 use kinstep::robot::embedded;
-use kinstep::scenario::{ArmSpec, Scenario, ScenarioText};
-use kinstep::study::sweep::Axis;
+use kinstep_files::scenario::{ArmSpec, Scenario, ScenarioText};
+use kinstep_study::sweep::Axis;
 use libfuzzer_sys::fuzz_target;
 
 // The first line is an assignment, or values to vary; the rest is the scenario.

@@ -30,8 +30,8 @@ impl Snippet {
     }
 }
 
-/// Returns the recursion solved for the new state, such as `x_n+1 = 5/24 x_n + ... + sigma (2 f_n)`.
-pub(crate) fn recursion(analysis: &Analysis) -> String {
+/// Returns the recursion of a row solved for the new state, as plain text such as `x_n+1 = 5/24 x_n + ... + sigma (2 f_n)`.
+pub fn recursion(analysis: &Analysis) -> String {
     let plain = Notation { fraction: |c| c.to_string(), sample: plain_sample, sigma: "sigma", gap: " " };
     recursion_in(analysis, &plain)
 }

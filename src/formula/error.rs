@@ -327,8 +327,11 @@ pub struct TableError {
 }
 
 impl TableError {
-    /// Collects defects into an error, if there are any.
-    pub(crate) fn unless_none(mut defects: Vec<Defect>) -> Result<(), Self> {
+    /// Collects the defects of a text of rows into an error, in the order of their places.
+    ///
+    /// # Errors
+    /// The error that holds them, if there are any.
+    pub fn unless_none(mut defects: Vec<Defect>) -> Result<(), Self> {
         defects.sort_by_key(|defect| defect.place);
         if defects.is_empty() { Ok(()) } else { Err(Self { defects }) }
     }

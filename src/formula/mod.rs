@@ -32,7 +32,7 @@ mod weights;
 pub use analysis::Analysis;
 pub use bibliography::bibtex;
 pub use card_curves::{FrequencyResponse, RootLocus, StabilityRegion};
-pub use card_snippets::Snippet;
+pub use card_snippets::{Snippet, recursion};
 pub use check::CheckedRow;
 pub use closed_form::{Cause, ClosedForm};
 pub use derivative_rule::DerivativeRule;
@@ -49,6 +49,3 @@ pub use row::{Coefficients, Declared, Row};
 pub use table::FormulaTable;
 
 pub use crate::math::RootCondition;
-
-#[cfg(feature = "cli")]
-pub(crate) use card_snippets::recursion;

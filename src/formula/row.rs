@@ -120,6 +120,31 @@ impl Row {
         &self.id
     }
 
+    /// Returns the name for people, if the row gives one.
+    pub fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    /// Returns the family, such as `look-ahead` or `adams-bashforth`, if the row gives one.
+    pub fn family(&self) -> Option<&str> {
+        self.family.as_deref()
+    }
+
+    /// Returns where the coefficients are from, a key of the bibliography and a place, if the row says so.
+    pub fn source(&self) -> Option<&str> {
+        self.source.as_deref()
+    }
+
+    /// Returns how the source was consulted, such as `read` or `recalled`, if the row says so.
+    pub fn attribution(&self) -> Option<&str> {
+        self.attribution.as_deref()
+    }
+
+    /// Returns the remark, if the row has one.
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
     /// Returns the coefficients as they were written.
     pub fn coefficients(&self) -> &Coefficients {
         &self.coefficients

@@ -1,7 +1,13 @@
 //! Numbers in sentences.
 
-/// Returns a number as people write it: `0.4`, `2`, and with an exponent (`1e300`, `2.5e-12`) where it is very large or small.
-pub(crate) fn number_text(value: f64) -> String {
+/// Returns a number as people write it in a sentence: `0.4`, `2`, and with an exponent (`1e300`, `2.5e-12`) where it is very
+/// large or small. What is written reads back as the same number.
+///
+/// ```
+/// use kinstep::math::number_text;
+/// assert_eq!([0.4, 2.0, 2.5e-12].map(number_text), ["0.4", "2", "2.5e-12"]);
+/// ```
+pub fn number_text(value: f64) -> String {
     let text = format!("{value:?}");
     text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }

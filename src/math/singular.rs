@@ -59,9 +59,18 @@ impl<const M: usize> SingularValues<M> {
     }
 }
 
-/// The same for any number of rows.
+/// The singular value decomposition `J = U S V^T` of a matrix with any number of rows, known at run time: the workspace, then
+/// the result. [`SingularValues`] is the same for a number of rows that is known at compile time.
+///
+/// ```
+/// use kinstep::math::RowRotations;
+/// let rows = [[3.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+/// let mut rotations = RowRotations::with_capacity(2, 3);
+/// rotations.compute(3, |row, column| rows[row][column]);
+/// assert_eq!((rotations.values(), rotations.smallest()), (&[3.0, 4.0][..], 3.0));
+/// ```
 #[derive(Clone, Debug)]
-pub(crate) struct RowRotations {
+pub struct RowRotations {
     rows: usize,
     /// Columns of the matrix: at most this many singular values can differ from zero.
     columns: usize,
@@ -74,7 +83,7 @@ pub(crate) struct RowRotations {
 
 impl RowRotations {
     /// A workspace for matrices of `rows` rows and `columns` columns, so that [`compute`](Self::compute) allocates nothing.
-    pub(crate) fn with_capacity(rows: usize, columns: usize) -> Self {
+    pub fn with_capacity(rows: usize, columns: usize) -> Self {
         Self {
             rows,
             columns,
@@ -84,8 +93,8 @@ impl RowRotations {
         }
     }
 
-    /// Replaces the decomposition by that of the matrix whose entries `entry(row, column)` reads.
-    pub(crate) fn compute(&mut self, columns: usize, entry: impl Fn(usize, usize) -> f64) {
+    /// Replaces the decomposition by that of the matrix of `columns` columns whose entries `entry(row, column)` reads.
+    pub fn compute(&mut self, columns: usize, entry: impl Fn(usize, usize) -> f64) {
         let rows = self.rows;
         self.columns = columns;
         self.rotated.clear();
@@ -152,13 +161,13 @@ impl RowRotations {
         true
     }
 
-    /// Returns the singular values, in no particular order.
-    pub(crate) fn values(&self) -> &[f64] {
+    /// The singular values, in no particular order.
+    pub fn values(&self) -> &[f64] {
         &self.values
     }
 
     /// The smallest of the `min(rows, columns)` singular values that such a matrix can have.
-    pub(crate) fn smallest(&self) -> f64 {
+    pub fn smallest(&self) -> f64 {
         // In ascending order this is the value after the surplus ones; ties count by their place.
         let surplus = self.rows.saturating_sub(self.columns);
         let rank = |i: usize| {
@@ -168,8 +177,9 @@ impl RowRotations {
         (0..self.rows).find(|&i| rank(i) == surplus).map_or(0.0, |i| self.values[i])
     }
 
-    /// Adds `sum_i v_i weight(s_i) (u_i . v)` to `out`; a zero singular value contributes nothing.
-    pub(crate) fn apply(&self, v: &[f64], weight: impl Fn(f64) -> f64, out: &mut [f64]) {
+    /// Adds `sum_i v_i weight(s_i) (u_i . v)` to `out`: with `weight(s) = 1/s` the pseudoinverse applied to `v`, with
+    /// `s / (s^2 + lambda^2)` its damped form. A zero singular value contributes nothing.
+    pub fn apply(&self, v: &[f64], weight: impl Fn(f64) -> f64, out: &mut [f64]) {
         for (i, &s) in self.values.iter().enumerate() {
             if s == 0.0 {
                 continue;

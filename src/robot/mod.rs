@@ -22,8 +22,8 @@ mod kinematics;
 mod lock;
 mod lookup;
 mod model;
-mod names;
-pub(crate) mod nearby;
+pub mod names;
+pub mod nearby;
 mod path;
 mod places;
 mod poses;
@@ -50,13 +50,10 @@ pub use lock::LockError;
 pub use model::{Defect, Joint, JointKind, Limits, Link, Mimic, Robot};
 pub use positions::PositionsError;
 pub use read_error::ReadError;
+pub use size::unbelievable;
 pub use tool::ToolError;
 pub use tree::{TreeRow, TreeRows};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 
-#[cfg(feature = "cli")]
-pub(crate) use names::{is_odd, quote};
-pub(crate) use names::{printable, shown};
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};
-pub(crate) use size::unbelievable;

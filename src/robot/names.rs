@@ -64,15 +64,16 @@ pub(super) fn short_list(names: &[impl AsRef<str>], conjunction: &str) -> String
     format!("{} and {} more", first.join(", "), names.len() - MOST)
 }
 
-/// Returns a name between backticks, odd characters escaped, cut after sixty characters.
-pub(crate) fn quote(name: &str) -> String {
+/// Returns the name of a link, joint, file or key as messages show it: between backticks, odd characters escaped, cut after
+/// sixty characters.
+pub fn quote(name: &str) -> String {
     let end = name.char_indices().nth(SHOWN).map_or(name.len(), |(end, _)| end);
     let cut = if end < name.len() { "…" } else { "" };
     format!("`{}{cut}`", printable(&name[..end]))
 }
 
-/// Returns a text as it may be shown: [odd](is_odd) characters are written by their numbers, `\u{1b}`, or `\n`.
-pub(crate) fn printable(text: &str) -> Cow<'_, str> {
+/// Returns a text as it may be shown on a terminal: [odd](is_odd) characters are written by their numbers, `\u{1b}`, or `\n`.
+pub fn printable(text: &str) -> Cow<'_, str> {
     if !text.contains(is_odd) {
         return Cow::Borrowed(text);
     }
@@ -83,14 +84,14 @@ pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// Returns a path as it may be shown; see [`printable`].
-pub(crate) fn shown(path: &Path) -> String {
+/// Returns the path of a file as it may be shown on a terminal; see [`printable`].
+pub fn shown(path: &Path) -> String {
     printable(&path.to_string_lossy()).into_owned()
 }
 
 /// Whether a character commands a terminal, turns the direction of writing, or looks like a blank or like nothing and is
 /// neither.
-pub(crate) fn is_odd(c: char) -> bool {
+pub fn is_odd(c: char) -> bool {
     c.is_control()
         || (c.is_whitespace() && c != ' ')
         || matches!(c, '\u{ad}' | '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')

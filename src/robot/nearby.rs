@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::names::{self, quote, shown};
 
-/// Returns ` (looked up from FOLDER)` for a relative path, and the [hint](hint).
-pub(crate) fn whereabouts(path: &Path) -> String {
+/// Returns what follows "there is no file PATH" in a message: ` (looked up from FOLDER)` for a relative path, and the [hint].
+pub fn whereabouts(path: &Path) -> String {
     let directory = path.is_relative().then(|| std::env::current_dir().ok()).flatten();
     let seen = directory.map(|directory| format!(" (looked up from {})", shown(&directory)));
     seen.unwrap_or_default() + &hint(path)
@@ -13,7 +13,7 @@ pub(crate) fn whereabouts(path: &Path) -> String {
 
 /// Returns `; did you mean ...?` with files whose names look like that of a file that is not there, or says which folder is
 /// not there either; nothing where neither helps.
-pub(crate) fn hint(path: &Path) -> String {
+pub fn hint(path: &Path) -> String {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match folder {
         Some(folder) if !folder.is_dir() => {

@@ -3,8 +3,9 @@
 /// Largest length \[m\], angle \[rad\] or offset that is believed: beyond it nothing of the arithmetic would be left.
 pub(super) const MAX_SIZE: f64 = 1e6;
 
-/// Says what is wrong with a number that is no length \[m\] and no angle \[rad\] of any arm.
-pub(crate) fn unbelievable(number: f64) -> Option<String> {
+/// Returns what is wrong with a number that is no length \[m\] and no angle \[rad\] of any arm: not finite, or more than 1e6 in
+/// size. `None` for all others.
+pub fn unbelievable(number: f64) -> Option<String> {
     if number.abs() <= MAX_SIZE {
         None
     } else if number.is_finite() {

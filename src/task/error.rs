@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// Every kind takes the leading rows of the geometric Jacobian (linear first, then angular).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum TaskKind {
     /// The x and y coordinates of the tip in the world \[m\].

@@ -54,7 +54,7 @@ impl Path for Box<dyn Path> {
 
 /// The plane in which a planar curve is drawn, in world axes; the first letter is the direction of the curve's own x.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Plane {
     /// Curve x along world x, curve y along world y.

@@ -1,0 +1,179 @@
+//! Arguments of the commands that make, draw, hand on and check trajectories.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::OutArguments;
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArguments {
+    /// The scenario, a TOML file (`kinstep schema scenario` has its keys)
+    pub(crate) scenario: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) written: OutArguments,
+
+    /// Further formats of the trajectory, beside csv: npz, parquet, ros2, mcap, moveit, or all
+    #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', requires = "out")]
+    pub(crate) format: Vec<String>,
+
+    /// Add a deceleration to rest where a trajectory for controllers ends in motion
+    #[arg(long, requires = "out")]
+    pub(crate) append_stop: bool,
+
+    /// Leave out report.html, the page with the replay and the figures
+    #[arg(long, requires = "out")]
+    pub(crate) no_report: bool,
+
+    /// Draw the plan too, into the folder figures of --out: a picture a file, its numbers beside it as CSV
+    #[arg(long, requires = "out")]
+    pub(crate) figures: bool,
+
+    /// Lay a value over the scenario; arms by name. May be given again
+    #[arg(long, value_name = "KEY.PATH=VALUE")]
+    pub(crate) set: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlotArguments {
+    /// The folder of kinstep plan --out or kinstep order --out, or the table of kinstep sweep --out
+    #[arg(value_name = "SAVED")]
+    pub(crate) saved: PathBuf,
+
+    /// Which figures of a plan, separated by commas; all unless given
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) figure: Vec<String>,
+
+    /// Only this arm. May be given again
+    #[arg(long, value_name = "NAME")]
+    pub(crate) arm: Vec<String>,
+
+    /// Only this joint, where joints are drawn. May be given again
+    #[arg(long, value_name = "NAME")]
+    pub(crate) joint: Vec<String>,
+
+    /// Begin at this time in s
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = time)]
+    pub(crate) from: Option<f64>,
+
+    /// End at this time in s
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = time)]
+    pub(crate) to: Option<f64>,
+
+    /// How wide and high each drawing is in pixels; as large as it needs to be unless given
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<(f64, f64)>,
+
+    /// Formats, separated by commas
+    #[arg(long, value_delimiter = ',', default_value = "svg")]
+    pub(crate) format: Vec<PictureFormat>,
+
+    /// Folder for the figures; the folder figures beside what was saved unless given
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Replace files that are already there
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+/// Formats of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PictureFormat {
+    /// Scalable drawings
+    Svg,
+    /// Pixels, two for each of the drawing's own
+    Png,
+    /// A page
+    Pdf,
+}
+
+impl PictureFormat {
+    /// The end of its files' names.
+    pub(crate) fn ending(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Pdf => "pdf",
+        }
+    }
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    let time = kinstep::math::evaluate(text).ok().filter(|time| time.is_finite());
+    time.ok_or_else(|| format!("\"{text}\" is no time in s"))
+}
+
+/// Reads `800x600`.
+fn size(text: &str) -> Result<(f64, f64), String> {
+    const SIDES: std::ops::RangeInclusive<u32> = 160..=8000;
+    let sides =
+        text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.trim().parse().ok()?, h.trim().parse().ok()?)));
+    match sides {
+        Some((width, height)) if SIDES.contains(&width) && SIDES.contains(&height) => {
+            Ok((width.into(), height.into()))
+        }
+        Some(_) => Err(format!("both sides have to be from {} to {} pixels", SIDES.start(), SIDES.end())),
+        None => Err(format!("\"{text}\" is no size; write width and height in pixels, as in 800x600")),
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArguments {
+    /// The folder that `plan --out` wrote, or a trajectory: CSV, npz, MCAP, or a message as YAML
+    #[arg(value_name = "DIR|TRAJECTORY")]
+    pub(crate) trajectory: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) robot: TrajectoryRobot,
+
+    /// The formats: csv, npz, parquet, ros2, mcap, moveit, or all
+    #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', required = true)]
+    pub(crate) format: Vec<String>,
+
+    /// Folder for the files; without it they go beside the trajectory
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Add a deceleration to rest where a trajectory for controllers ends in motion
+    #[arg(long)]
+    pub(crate) append_stop: bool,
+
+    /// Replace files that are already there
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TrajectoryRobot {
+    /// The robot of a lone trajectory: a file, or the name of one that comes with the program
+    #[arg(long, value_name = "FILE")]
+    pub(crate) robot: Option<String>,
+
+    /// Link at which the arm begins
+    #[arg(long, value_name = "LINK", requires = "robot", requires = "tip")]
+    pub(crate) base: Option<String>,
+
+    /// Link at which the arm ends
+    #[arg(long, value_name = "LINK", requires = "robot", requires = "base")]
+    pub(crate) tip: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    /// A trajectory: CSV, npz, MCAP, or a message as YAML; or the folder that `plan --out` wrote
+    #[arg(value_name = "TRAJECTORY|DIR")]
+    pub(crate) trajectory: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) robot: TrajectoryRobot,
+
+    /// A scenario whose paths the tips should follow, arm by arm of the same name; its robots are taken unless --robot is given
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scenario: Option<PathBuf>,
+
+    /// The largest task error that is allowed, in m and rad
+    #[arg(long, value_name = "E", default_value_t = 1e-3)]
+    pub(crate) max_error: f64,
+}

@@ -1,0 +1,118 @@
+//! Scenarios whose robots are tables, calibrated, locked or tooled.
+
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
+
+use crate::program::{Desk, kinstep_in};
+
+const SCENARIO: &str = r#"sigma = 0.01
+duration = 1.0
+formula = "la6-wang-guo"
+
+[law]
+h = 0.4
+
+[[arm]]
+name = "left"
+robot = "robots/arm.toml"
+base = "base"
+tip = "link4"
+calibration = "robots/mine.toml"
+lock = { j3 = "pi/6" }
+tool = { xyz = [1.0, 0, 0], rpy = [0, 0, 0.2] }
+task = "position-xy"
+q0 = ["pi/10", 0.3, 0.3]
+path = { kind = "circle", radius = 0.1 }
+"#;
+
+/// The same arm written by hand: three joints, of which one is turned, and a longer last link.
+const BY_HAND: &str = r#"<robot name="hand"><link name="base"/><link name="a"/><link name="b"/><link name="c"/><link name="end"/>
+<joint name="j1" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint>
+<joint name="j2" type="continuous"><parent link="a"/><child link="b"/><origin xyz="1 0 0" rpy="0 0 0.05"/><axis xyz="0 0 1"/></joint>
+<joint name="j4" type="continuous"><parent link="b"/><child link="c"/>
+  <origin xyz="1.8660254037844386 0.5 0" rpy="0 0 0.5235987755982988"/><axis xyz="0 0 1"/></joint>
+<joint name="end" type="fixed"><parent link="c"/><child link="end"/><origin xyz="1 0 0"/></joint></robot>
+"#;
+
+fn desk() -> Desk {
+    let desk = Desk::new(&[("s.toml", SCENARIO), ("hand.urdf", BY_HAND)]);
+    std::fs::create_dir(desk.path("robots")).unwrap();
+    std::fs::write(desk.path("robots/arm.toml"), "planar = [1, 1, 1, 1]\n").unwrap();
+    std::fs::write(desk.path("robots/mine.toml"), "[joint.j2]\nzero = 0.05\n").unwrap();
+    desk
+}
+
+/// The positions in a trajectory file.
+fn numbers(desk: &Desk, folder: &str) -> Vec<f64> {
+    let text = std::fs::read_to_string(desk.path(folder).join("trajectory.csv")).unwrap();
+    let lines = text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
+    lines.flat_map(|line| line.split(',').map(|cell| cell.parse().unwrap())).collect()
+}
+
+#[test]
+fn a_changed_robot_moves_as_the_one_written_by_hand() {
+    let desk = desk();
+    desk.run(&["plan", "s.toml", "--out", "changed"]).expect(0);
+    let by_hand = SCENARIO
+        .lines()
+        .filter(|line| !["calibration", "lock", "tool"].iter().any(|key| line.starts_with(key)))
+        .map(|line| line.replace("robots/arm.toml", "hand.urdf").replace("link4", "end"))
+        .collect::<Vec<_>>()
+        .join("\n");
+    std::fs::write(desk.path("hand.toml"), by_hand).unwrap();
+    desk.run(&["plan", "hand.toml", "--out", "hand"]).expect(0);
+    let (changed, hand) = (numbers(&desk, "changed"), numbers(&desk, "hand"));
+    assert!(changed.len() > 700 && changed.len() == hand.len(), "{} and {}", changed.len(), hand.len());
+    assert!(changed.iter().zip(&hand).all(|(a, b)| (a - b).abs() < 1e-9));
+}
+
+#[test]
+fn a_written_scenario_finds_its_calibration_and_plans_the_same_again() {
+    let desk = desk();
+    desk.run(&["plan", "s.toml", "--out", "one"]).expect(0);
+    std::fs::create_dir(desk.path("elsewhere")).unwrap();
+    let written = desk.path("one/scenario.toml");
+    kinstep_in(&desk.path("elsewhere"), &["plan", written.to_str().unwrap(), "--out", "two"]).expect(0);
+    let bytes = |folder: &str| std::fs::read(desk.path(folder).join("trajectory.csv")).unwrap();
+    assert_eq!(bytes("one"), bytes("elsewhere/two"));
+    // Without the correction the arm goes elsewhere.
+    std::fs::write(desk.path("robots/mine.toml"), "[joint.j2]\nzero = 0.0\n").unwrap();
+    desk.run(&["plan", "s.toml", "--out", "three"]).expect(0);
+    assert_ne!(bytes("one"), bytes("three"));
+}
+
+/// Two arms on one trunk, from the floor and so with two joints in common.
+const TRUNK: &str = include_str!("../bad_input/scenario/arms_share_a_joint_independently.toml");
+
+#[test]
+fn arms_that_shall_be_independent_may_not_share_a_joint() {
+    let desk = Desk::new(&[("s.toml", &TRUNK.replace("duration = 4.0", "duration = 8.0"))]);
+    let refused = desk.run(&["plan", "s.toml"]).expect(2).err;
+    assert!(
+        refused.contains("arm.right.independent: arms `left` and `right` both move joint `lift`"),
+        "{refused}"
+    );
+    // Whichever of the two asks for it.
+    let other = ["--set", "arm.right.independent=false", "--set", "arm.left.independent=true"];
+    assert!(
+        desk.run(&[&["plan", "s.toml"][..], &other].concat()).expect(2).err.contains("arm.left.independent")
+    );
+    desk.run(&["plan", "s.toml", "--set", "arm.right.independent=false"]).expect(0);
+    // What is said as a remedy is one.
+    let still = "{ lift = 0.1, waist = 0.1 }";
+    let locks = ["left", "right"].map(|arm| format!("arm.{arm}.lock={still}"));
+    let starts = ["left", "right"].map(|arm| format!("arm.{arm}.q0=[0.3, 0.4, -0.8, 0.2, 0.5, 0.1]"));
+    let set = locks.iter().chain(&starts).flat_map(|set| ["--set", set.as_str()]);
+    desk.run(&["plan", "s.toml"].into_iter().chain(set).collect::<Vec<_>>()).expect(0);
+}
+
+#[test]
+fn a_free_joint_on_the_path_is_named_with_its_remedy() {
+    let free = BY_HAND.replace("name=\"j4\" type=\"continuous\"", "name=\"j4\" type=\"floating\"");
+    let scenario = SCENARIO.replace("robots/arm.toml", "free.urdf").replace("link4", "end");
+    let scenario = scenario.replace("calibration = \"robots/mine.toml\"\nlock = { j3 = \"pi/6\" }\n", "");
+    let desk = Desk::new(&[("s.toml", &scenario), ("free.urdf", &free)]);
+    let error = desk.run(&["plan", "s.toml"]).expect(3).err;
+    assert!(error.contains("passes joint `j4` of type floating") && error.contains("with `lock`"), "{error}");
+    desk.run(&["plan", "s.toml", "--set", "arm.left.lock={ j4 = 0 }", "--set", "arm.left.q0=[0.3, 0.5]"])
+        .expect(0);
+}

@@ -1,0 +1,402 @@
+//! From a scenario to a planner: robots and rows looked up, chains mounted, paths laid.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Unit, Vector3};
+
+use super::error::{ErrorKind, ScenarioError};
+use super::key_path::KeyPath;
+use super::model::{ArmSpec, LawKind, Mount, Scenario, Start};
+use super::noise_spec::NoiseSpec;
+use super::path_spec::{PathKind, PathSpec, TimeLawKind};
+use super::real::Real;
+use super::robots::RobotSource;
+use super::start_pose::StartPose;
+use kinstep::formula::{Duty, Formula, FormulaTable};
+use kinstep::law::Pseudoinverse;
+use kinstep::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
+use kinstep::robot::{Chain, ChainError, ChainJoint, PositionsError, Robot, UrdfOptions};
+use kinstep::task::{self, Leaning, Motion, Planar, PlanarCurve, TimeLaw, Turning};
+
+impl Scenario {
+    /// Returns a planner for the scenario with a row of `table`; robot files are looked for from `folder`, the place
+    /// of the scenario's own file.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] with the path of the key at fault: [`ScenarioText::placed`](super::ScenarioText::placed)
+    /// gives it a place.
+    pub fn planner(&self, table: &FormulaTable, folder: Option<&Path>) -> Result<Planner, ScenarioError> {
+        self.check()?;
+        if self.problem.is_some() {
+            let problem =
+                "this scenario is an initial value problem and moves no arm; `kinstep order` runs it";
+            return Err(ScenarioError::at(ErrorKind::Scenario, &KeyPath::dotted("problem"), problem));
+        }
+        let formula = self.formula_of(table);
+        let arms = self.build_arms(folder);
+        let refusals = arms.iter().filter_map(|arm| arm.as_ref().err());
+        if let Some(all) = ScenarioError::all(formula.as_ref().err().into_iter().chain(refusals)) {
+            return Err(all);
+        }
+        let arms: Vec<Arm> = arms.into_iter().collect::<Result<_, _>>()?;
+        let arms = self.on_machines(arms)?;
+        self.builder(formula?).arms(arms).build().map_err(|e| self.refused(&e))
+    }
+
+    /// Returns the arms on their machines, with the paths that they should follow.
+    ///
+    /// # Errors
+    /// As [`Scenario::planner`].
+    pub fn arms(&self, folder: Option<&Path>) -> Result<Vec<Arm>, ScenarioError> {
+        self.on_machines(self.build_arms(folder).into_iter().collect::<Result<_, _>>()?)
+    }
+
+    /// Returns the row that the scenario names, or the best general one, if it may be run.
+    pub(crate) fn formula_of<'t>(&self, table: &'t FormulaTable) -> Result<&'t Formula, ScenarioError> {
+        let at = KeyPath::dotted("formula");
+        let formula = match &self.formula {
+            Some(id) => table.get(id).map_err(|e| ScenarioError::at(ErrorKind::Scenario, &at, e))?,
+            None => match FormulaTable::builtin().best_for(&Duty::default()) {
+                Some((formula, _)) => formula,
+                None => return Err(ScenarioError::at(ErrorKind::Scenario, &at, "this key is missing")),
+            },
+        };
+        let runnable =
+            if self.allow_unstable { formula.runnable() } else { formula.runnable_with_feedback() };
+        runnable.map_err(|e| ScenarioError::at(ErrorKind::Formula, &at, e))?;
+        Ok(formula)
+    }
+
+    fn builder(&self, formula: &Formula) -> PlannerBuilder {
+        let builder = Planner::builder()
+            .formula(formula)
+            .sigma(self.sigma.value())
+            .duration(self.duration.value())
+            .allow_unstable(self.allow_unstable)
+            .start(self.start.map_or(planner::Start::Sufficient, Start::planned))
+            .noise(self.noise.as_ref().map(NoiseSpec::noise).unwrap_or_default());
+        match (&self.law.h, &self.law.gain) {
+            (Some(h), _) => builder.h(h.value()),
+            (None, Some(gain)) => builder.gain(gain.value()),
+            (None, None) => builder,
+        }
+    }
+
+    /// Returns the arms in their order. Those with a `start_pose` are built last: where they share joints with others,
+    /// these are where the others have them.
+    fn build_arms(&self, folder: Option<&Path>) -> Vec<Result<Arm, ScenarioError>> {
+        let mut built: Vec<(usize, Result<Arm, ScenarioError>)> = Vec::new();
+        let mut order: Vec<usize> = (0..self.arm.len()).collect();
+        order.sort_by_key(|&i| self.arm[i].start_pose.is_some());
+        for i in order {
+            let spec = &self.arm[i];
+            let on_machine = built.iter().filter(|(j, _)| self.arm[*j].is_same_machine(spec));
+            let machine: Vec<&Arm> = on_machine.filter_map(|(_, arm)| arm.as_ref().ok()).collect();
+            let arm = self.build_arm(spec, folder, &machine);
+            built.push((i, arm));
+        }
+        built.sort_by_key(|(i, _)| *i);
+        built.into_iter().map(|(_, arm)| arm).collect()
+    }
+
+    fn build_arm(
+        &self,
+        spec: &ArmSpec,
+        folder: Option<&Path>,
+        machine: &[&Arm],
+    ) -> Result<Arm, ScenarioError> {
+        let at = KeyPath::dotted("arm").key(&spec.name);
+        let chain = chain(&at, spec, folder)?.mounted(&spec.mount.pose());
+        let given: Vec<f64> = spec.q0.iter().map(Real::value).collect();
+        if !given.is_empty() || spec.start_pose.is_none() {
+            chain.check_within_limits(&given).map_err(|problem| refused_positions(&at, &problem))?;
+        }
+        let held = positions_in_common(&chain, machine);
+        let solve = |start: &StartPose| start.solve(&at, spec, (&chain, &held), self.duration.value());
+        let found = spec.start_pose.as_ref().map(solve);
+        let (q0, distance) = match found.transpose()? {
+            Some(solution) => (solution.q.clone(), Some(solution.distance())),
+            None => (given, None),
+        };
+        let start = chain.forward(&q0, &mut chain.scratch()).pose();
+        let motion = spec.path.motion(&start, self.duration.value());
+        let mut arm = Arm::new(spec.name.clone(), chain, q0, spec.task, motion);
+        if let Some(distance) = distance {
+            arm = arm.with_start_distance(distance);
+        }
+        Ok(match (self.law.kind, &self.law.threshold) {
+            (LawKind::Pseudoinverse, None) => arm,
+            (LawKind::Pseudoinverse, Some(t)) => arm.with_law(Pseudoinverse::new().with_threshold(t.value())),
+        })
+    }
+
+    /// Puts arms that are parts of one machine onto it: arms of the same robot with their bases at the same place. At
+    /// different places they are two of a kind.
+    ///
+    /// # Errors
+    /// Two arms with a joint in common that shall be independent, or of which it can not be said whether they are one
+    /// machine, since their bases are different links of it, or the robot is not calibrated and locked alike.
+    fn on_machines(&self, arms: Vec<Arm>) -> Result<Vec<Arm>, ScenarioError> {
+        let all: Vec<(&ArmSpec, &Arm)> = self.arm.iter().zip(&arms).collect();
+        for (i, &own) in all.iter().enumerate() {
+            let objection = all[..i].iter().find_map(|&other| objection(own, other));
+            objection.map_or(Ok(()), Err)?;
+        }
+        // A machine is called after the first of its arms.
+        let machine = |own: &ArmSpec| self.arm.iter().find(|other| other.is_same_machine(own));
+        let placed = arms.into_iter().zip(self.arm.iter().map(machine));
+        Ok(placed.map(|(arm, first)| arm.on_machine(first.map_or("", |first| first.name.as_str()))).collect())
+    }
+
+    /// Returns the planner's refusal with the key that it is about.
+    fn refused(&self, error: &PlannerError) -> ScenarioError {
+        let of_arm = |arm: &str, key: &str| KeyPath::dotted("arm").key(arm).key(key);
+        let feedback = if self.law.gain.is_some() { "law.gain" } else { "law.h" };
+        let (kind, path) = match error {
+            PlannerError::Duration { .. } => (ErrorKind::Scenario, KeyPath::dotted("duration")),
+            PlannerError::Sigma { .. } | PlannerError::TooManySteps { .. } => {
+                (ErrorKind::Scenario, KeyPath::dotted("sigma"))
+            }
+            PlannerError::Feedback { .. } | PlannerError::StepSizeOutsideRange { .. } => {
+                (ErrorKind::Scenario, KeyPath::dotted(feedback))
+            }
+            PlannerError::Initial { arm, problem } => {
+                return refused_positions(&KeyPath::dotted("arm").key(arm), problem);
+            }
+            PlannerError::PathStart { arm, .. } => {
+                let remedy = "; `start_pose = \"path\"` has q0 solved for";
+                let at = of_arm(arm, "path").key("center");
+                return ScenarioError::at(ErrorKind::Scenario, &at, format!("{error}{remedy}"));
+            }
+            PlannerError::SharedStart { other, .. } => {
+                let remedy = ", or the arms different mounts if there are two such robots";
+                return ScenarioError::at(
+                    ErrorKind::Scenario,
+                    &of_arm(other, "q0"),
+                    format!("{error}{remedy}"),
+                );
+            }
+            PlannerError::NoJoints { arm, .. } => (ErrorKind::Robot, of_arm(arm, "tip")),
+            PlannerError::Integrate(_) => (ErrorKind::Formula, KeyPath::dotted("formula")),
+            _ => (ErrorKind::Scenario, KeyPath::default()),
+        };
+        if path == KeyPath::default() {
+            return ScenarioError::new(kind, error.to_string());
+        }
+        ScenarioError::at(kind, &path, error)
+    }
+}
+
+/// The joints of a chain, by their places in it, that other arms move too, and where these have them.
+fn positions_in_common(chain: &Chain, arms: &[&Arm]) -> Vec<(usize, f64)> {
+    let common = |(place, joint): (usize, &ChainJoint)| {
+        let of = |arm: &&Arm| arm.start_of(&joint.name);
+        arms.iter().find_map(of).map(|position| (place, position))
+    };
+    chain.joints().iter().enumerate().filter_map(common).collect()
+}
+
+fn refused_positions(at: &KeyPath, problem: &PositionsError) -> ScenarioError {
+    let at = at.key("q0");
+    let at = problem.index().map_or(at.clone(), |index| at.index(index));
+    ScenarioError::at(ErrorKind::Scenario, &at, problem)
+}
+
+/// Says why two arms with a joint in common can not be planned as they stand.
+fn objection((spec, arm): (&ArmSpec, &Arm), (other_spec, other): (&ArmSpec, &Arm)) -> Option<ScenarioError> {
+    let is_one = spec.is_same_machine(other_spec);
+    let is_unclear = !is_one && (&spec.robot, &spec.mount) == (&other_spec.robot, &other_spec.mount);
+    let apart = [spec, other_spec].into_iter().find(|own| own.independent).filter(|_| is_one);
+    if !is_unclear && apart.is_none() {
+        return None;
+    }
+    let joint = in_common(arm, other)?;
+    let (key, remedy) = if is_one {
+        ("independent", "leave `independent` out to share the joint, or hold it still with `lock` in both")
+    } else if spec.base == other_spec.base {
+        (
+            "robot",
+            "give them the same `calibration`, `lock` and `assume_unlimited` to share the joint, or different mounts if \
+                   there are two such robots",
+        )
+    } else {
+        (
+            "base",
+            "give them the same `base` to share the joint, or different mounts if there are two such robots",
+        )
+    };
+    let (one, two) = (&other_spec.name, &spec.name);
+    let problem = format!("arms `{one}` and `{two}` both move joint `{joint}` of one robot; {remedy}");
+    let at = KeyPath::dotted("arm").key(&apart.unwrap_or(spec).name).key(key);
+    Some(ScenarioError::at(ErrorKind::Scenario, &at, problem))
+}
+
+/// The first joint that two arms both move.
+fn in_common<'a>(arm: &'a Arm, other: &Arm) -> Option<&'a str> {
+    let theirs: HashSet<&str> = other.chain().joints().iter().map(|joint| joint.name.as_str()).collect();
+    arm.chain().joints().iter().map(|joint| joint.name.as_str()).find(|name| theirs.contains(name))
+}
+
+/// Returns where the robot of an arm comes from, and the robot as it is there.
+pub(super) fn read_robot(
+    at: &KeyPath,
+    spec: &ArmSpec,
+    folder: Option<&Path>,
+) -> Result<(RobotSource, Robot), ScenarioError> {
+    let refuse = |e: ScenarioError| ScenarioError::at(e.kind, &at.key("robot"), e.message);
+    let source = RobotSource::find(&spec.robot, folder).map_err(refuse)?;
+    let options = UrdfOptions { assume_unlimited: spec.assume_unlimited, ..UrdfOptions::default() };
+    let robot = source.read(&options).map_err(|e| {
+        let refusal = source.refusal(&e);
+        let message = format!("{}: {}", at.key("robot"), refusal.message);
+        let path = Some(at.key("robot")).filter(|_| refusal.kind == ErrorKind::File);
+        ScenarioError { message, path, ..refusal }
+    })?;
+    Ok((source, robot))
+}
+
+fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
+    let (source, robot) = read_robot(at, spec, folder)?;
+    let (robot, tip) = spec.tooled(at, spec.changed(at, robot, folder)?)?;
+    let chain = robot.chain(&spec.base, &tip).map_err(|e| {
+        let key = if robot.link(&spec.base).is_none() { "base" } else { "tip" };
+        let is_free = matches!(e, ChainError::UnsupportedJoint { .. });
+        let remedy = if is_free { ", or hold the joint still with `lock`" } else { "" };
+        ScenarioError::at(ErrorKind::Robot, &at.key(key), format!("robot {}: {e}{remedy}", source.label()))
+    })?;
+    if chain.dof() == 0 {
+        let problem = format!("nothing moves between `{}` and `{}`", spec.base, spec.tip);
+        return Err(ScenarioError::at(ErrorKind::Robot, &at.key("tip"), problem));
+    }
+    Ok(chain)
+}
+
+impl Start {
+    fn planned(self) -> planner::Start {
+        match self {
+            Self::Paper => planner::Start::Paper,
+            Self::Ramp => planner::Start::Ramp,
+            Self::Rk4 => planner::Start::Rk4,
+            Self::Rk8 => planner::Start::Rk8,
+        }
+    }
+}
+
+impl TimeLawKind {
+    fn planned(self) -> Box<dyn TimeLaw> {
+        match self {
+            Self::Sin2 => Box::new(task::Sin2),
+            Self::Sin2sin2 => Box::new(task::Sin2Sin2),
+            Self::Linear => Box::new(task::Linear),
+            Self::Quintic => Box::new(task::Quintic),
+        }
+    }
+}
+
+impl Mount {
+    /// Returns the pose of the arm's base in the world.
+    pub fn pose(&self) -> IsometryMatrix3<f64> {
+        let [roll, pitch, yaw] = self.rpy.each_ref().map(Real::value);
+        let rotation = Rotation3::from_euler_angles(roll, pitch, yaw);
+        IsometryMatrix3::from_parts(Translation3::from(vector(&self.xyz)), rotation)
+    }
+}
+
+impl ArmSpec {
+    /// Whether two arms are parts of one machine: of the same robot, with their bases at the same place.
+    pub(super) fn is_same_machine(&self, other: &Self) -> bool {
+        (&self.robot, &self.base, &self.mount) == (&other.robot, &other.base, &other.mount)
+            && (&self.calibration, &self.lock) == (&other.calibration, &other.lock)
+            && self.assume_unlimited == other.assume_unlimited
+    }
+}
+
+/// Two numbers are x and y.
+pub(super) fn vector(numbers: &[Real]) -> Vector3<f64> {
+    let number = |axis: usize| numbers.get(axis).map_or(0.0, Real::value);
+    Vector3::new(number(0), number(1), number(2))
+}
+
+fn value_or(number: Option<&Real>, default: f64) -> f64 {
+    number.map_or(default, Real::value)
+}
+
+impl PathSpec {
+    /// Returns the motion along the path of a tip that stands at `start`, in so many seconds.
+    pub fn motion(&self, start: &IsometryMatrix3<f64>, duration: f64) -> Motion {
+        let time_law = self.time_law.unwrap_or(TimeLawKind::Sin2).planned();
+        let path = self.path(start);
+        match &self.center {
+            Some(center) => {
+                let mut center = vector(center);
+                if self.center.as_ref().is_some_and(|given| given.len() == 2) {
+                    center.z = start.translation.z;
+                }
+                Motion::centered(path, time_law, duration, center, start.rotation)
+            }
+            None => Motion::from_pose(path, time_law, duration, start),
+        }
+    }
+
+    fn path(&self, start: &IsometryMatrix3<f64>) -> Box<dyn task::Path> {
+        let path: Box<dyn task::Path> = match self.kind {
+            PathKind::Line => Box::new(task::Line { displacement: self.line_displacement(start) }),
+            PathKind::Fourier => Box::new(task::Fourier {
+                cosines: self.cosines.iter().flatten().map(|a| vector(a)).collect(),
+                sines: self.sines.iter().flatten().map(|b| vector(b)).collect(),
+            }),
+            _ => Box::new(Planar::new(
+                self.curve(),
+                self.plane.unwrap_or_default(),
+                value_or(self.rotation.as_ref(), 0.0),
+                value_or(self.from.as_ref(), 0.0),
+                value_or(self.sweep.as_ref(), std::f64::consts::TAU),
+            )),
+        };
+        match &self.turn {
+            None => path,
+            Some(turn) => {
+                let (axis, angle) = (Unit::new_normalize(vector(&turn.axis)), turn.angle.value());
+                if turn.back {
+                    Box::new(Leaning::new(path, axis, angle))
+                } else {
+                    Box::new(Turning::new(path, axis, angle))
+                }
+            }
+        }
+    }
+
+    fn line_displacement(&self, start: &IsometryMatrix3<f64>) -> Vector3<f64> {
+        match (&self.displacement, &self.to) {
+            (Some(displacement), _) => vector(displacement),
+            (None, Some(to)) => {
+                let mut displacement = vector(to) - start.translation.vector;
+                if to.len() == 2 {
+                    displacement.z = 0.0;
+                }
+                displacement
+            }
+            (None, None) => Vector3::zeros(),
+        }
+    }
+
+    /// The parameters that the kind needs have been checked to be there.
+    fn curve(&self) -> Box<dyn PlanarCurve> {
+        let radius = value_or(self.radius.as_ref(), 0.0);
+        let pair = |pair: &Option<[Real; 2]>| {
+            pair.as_ref().map_or([0.0; 2], |pair| pair.each_ref().map(Real::value))
+        };
+        match self.kind {
+            PathKind::Tricuspid => Box::new(task::Tricuspid { radius }),
+            PathKind::Astroid => Box::new(task::Astroid { radius }),
+            PathKind::Rose => Box::new(task::Rose { radius, petals: value_or(self.petals.as_ref(), 0.0) }),
+            PathKind::Lissajous => Box::new(task::Lissajous {
+                amplitudes: pair(&self.amplitudes),
+                frequencies: pair(&self.frequencies),
+                phase: value_or(self.phase.as_ref(), 0.0),
+            }),
+            PathKind::Circle | PathKind::Line | PathKind::Fourier => Box::new(task::Circle { radius }),
+        }
+    }
+}

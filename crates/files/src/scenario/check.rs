@@ -1,0 +1,228 @@
+//! What a scenario must satisfy before anything is looked up or computed.
+
+use super::error::{ErrorKind, ScenarioError};
+use super::key_path::KeyPath;
+use super::model::{ArmSpec, Scenario};
+use super::noise_spec::NoiseSpec;
+use super::path_spec::{PathKind, PathSpec, TurnSpec};
+use super::real::Real;
+use super::start_pose::{self, StartPose};
+use super::study_spec::StudySpec;
+use kinstep::task::TaskKind;
+
+/// Largest length [m], angle [rad] or other number of an arm that is believed.
+const MAX_SIZE: f64 = 1e6;
+
+/// Most memory that the trajectories of one plan may take [bytes].
+const MAX_BYTES: f64 = 4e9;
+
+fn refuse(path: &KeyPath, problem: impl std::fmt::Display) -> ScenarioError {
+    ScenarioError::at(ErrorKind::Scenario, path, problem)
+}
+
+fn require(holds: bool, path: &KeyPath, problem: impl FnOnce() -> String) -> Result<(), ScenarioError> {
+    if holds { Ok(()) } else { Err(refuse(path, problem())) }
+}
+
+impl Scenario {
+    /// Checks what can be checked without the robots and the formula table: signs, ranges, names, and that each
+    /// path has the parameters of its kind and no others.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] for the first thing that does not hold, with all others beside it.
+    pub fn check(&self) -> Result<(), ScenarioError> {
+        let arms = KeyPath::dotted("arm");
+        let mut found = vec![self.check_time(), self.check_law()];
+        found.extend(self.noise.as_ref().map(NoiseSpec::check));
+        found.extend(self.study.as_ref().map(StudySpec::check));
+        if self.problem.is_some() {
+            found.push(require(self.arm.is_empty(), &arms, || {
+                "a scenario has arms or a [problem], not both: take one of them away".to_owned()
+            }));
+            found.push(self.equations().map(|_| ()));
+        } else {
+            found.push(require(!self.arm.is_empty(), &arms, || {
+                "a scenario needs at least one [[arm]]".to_owned()
+            }));
+        }
+        for (index, arm) in self.arm.iter().enumerate() {
+            let name = arms.index(index).key("name");
+            let taken = self.arm[..index].iter().any(|other| other.name == arm.name);
+            found.push(check_name(&name, &arm.name));
+            found.push(require(!taken, &name, || {
+                format!("two arms are called \"{}\"; each needs a name of its own", arm.name)
+            }));
+            found.extend(check_arm(&arms.key(&arm.name), arm));
+        }
+        // How many steps there are is worth a word only when they are numbers of seconds at all.
+        if found[0].is_ok() {
+            found.push(self.check_size());
+        }
+        ScenarioError::all(found.iter().filter_map(|found| found.as_ref().err())).map_or(Ok(()), Err)
+    }
+
+    fn check_time(&self) -> Result<(), ScenarioError> {
+        let (sigma, duration) = (self.sigma.value(), self.duration.value());
+        let at = KeyPath::dotted("sigma");
+        require(sigma.is_finite() && sigma > 0.0, &at, || {
+            let sigma = &self.sigma;
+            format!("{sigma} s is not a sampling gap; give a positive number of seconds such as 0.01")
+        })?;
+        require(duration.is_finite() && duration > 0.0, &KeyPath::dotted("duration"), || {
+            let duration = &self.duration;
+            format!("{duration} s is not the length of a motion; give a positive number of seconds")
+        })?;
+        require(sigma <= duration, &at, || {
+            let (sigma, duration) = (&self.sigma, &self.duration);
+            format!("{sigma} s is longer than the motion of {duration} s; it must be at most the duration")
+        })
+    }
+
+    fn check_law(&self) -> Result<(), ScenarioError> {
+        let law = KeyPath::dotted("law");
+        if let (Some(h), Some(gain)) = (&self.law.h, &self.law.gain) {
+            let problem = format!("h = {h} and gain = {gain} say the same thing twice; give one of them");
+            return Err(refuse(&law.key("gain"), problem));
+        }
+        if let Some(h) = &self.law.h {
+            let feeds_back = h.value() > 0.0 || (h.value() == 0.0 && self.allow_unstable);
+            require(feeds_back, &law.key("h"), || {
+                let remedy = "set allow_unstable = true to run without feedback (h = 0)";
+                format!("{h} is not a feedback step; h is positive and below the formula's h_max; {remedy}")
+            })?;
+        }
+        if let Some(gain) = &self.law.gain {
+            require(gain.value() > 0.0, &law.key("gain"), || {
+                format!("{gain} 1/s is not a gain; it is positive")
+            })?;
+        }
+        if let Some(threshold) = &self.law.threshold {
+            believable(&law.key("threshold"), threshold)?;
+            require(threshold.value() > 0.0, &law.key("threshold"), || {
+                format!("{threshold} is not a threshold for singular values; it is positive")
+            })?;
+        }
+        Ok(())
+    }
+
+    fn check_size(&self) -> Result<(), ScenarioError> {
+        let steps = self.duration.value() / self.sigma.value();
+        let columns: usize = self.arm.iter().map(|arm| 2 * arm.q0.len() + 1).sum();
+        let bytes = steps * (columns + 1) as f64 * 8.0;
+        require(bytes <= MAX_BYTES, &KeyPath::dotted("sigma"), || {
+            let (gigabytes, hours) = (bytes / 1e9, steps * self.arm.len() as f64 * 1e-6 / 3600.0);
+            format!(
+                "{} s over {} s are {steps:.3e} steps: {gigabytes:.3e} GB of trajectory and about {hours:.1e} hours; \
+                 take a longer gap or a shorter motion (at most {:.0} GB)",
+                self.sigma,
+                self.duration,
+                MAX_BYTES / 1e9
+            )
+        })
+    }
+}
+
+fn check_name(at: &KeyPath, name: &str) -> Result<(), ScenarioError> {
+    let plain = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_'));
+    require(plain, at, || {
+        format!(
+            "\"{name}\" is not a name for an arm; letters, digits, '-' and '_' are, since it heads columns of files"
+        )
+    })
+}
+
+/// What is found in the parts of an arm, each by itself.
+fn check_arm(at: &KeyPath, arm: &ArmSpec) -> Vec<Result<(), ScenarioError>> {
+    let mut found = vec![require(!arm.q0.is_empty() || arm.start_pose.is_some(), &at.key("q0"), || {
+        "give one position per joint of the chain, or a `start_pose` that they are to be solved for"
+            .to_owned()
+    })];
+    found.extend(arm.q0.iter().zip(0..).map(|(value, joint)| believable(&at.key("q0").index(joint), value)));
+    for (name, pose) in [("mount", &arm.mount), ("tool", &arm.tool)] {
+        for (key, triple) in [("xyz", &pose.xyz), ("rpy", &pose.rpy)] {
+            let at = at.key(name).key(key);
+            found.extend(triple.iter().zip(0..).map(|(value, axis)| believable(&at.index(axis), value)));
+        }
+    }
+    for (joint, held) in &arm.lock {
+        let at = at.key("lock").key(joint);
+        found.extend(held.numbers().iter().map(|value| believable(&at, value)));
+    }
+    found.extend(arm.start_pose.as_ref().map(|start| check_start(&at.key("start_pose"), arm, start)));
+    found.push(check_path(&at.key("path"), &arm.path, arm.task));
+    found
+}
+
+fn check_start(at: &KeyPath, arm: &ArmSpec, start: &StartPose) -> Result<(), ScenarioError> {
+    let (xyz, rpy) = start.parts();
+    if let Some(xyz) = xyz {
+        check_point(&at.key("xyz"), xyz, arm.task)?;
+        for (value, axis) in xyz.iter().zip(0..) {
+            believable(&at.key("xyz").index(axis), value)?;
+        }
+    }
+    for (value, axis) in rpy.into_iter().flatten().zip(0..) {
+        believable(&at.key("rpy").index(axis), value)?;
+    }
+    start_pose::objection(arm, start).map_or(Ok(()), |problem| Err(refuse(at, problem)))
+}
+
+/// The one rule for the size of lengths and angles: beyond it nothing of the arithmetic would be left.
+fn believable(at: &KeyPath, number: &Real) -> Result<(), ScenarioError> {
+    require(number.value().is_finite(), at, || format!("{number} is not a finite number"))?;
+    require(number.value().abs() <= MAX_SIZE, at, || {
+        format!("{number} is beyond any arm; lengths [m] and angles [rad] are at most {MAX_SIZE} in size")
+    })
+}
+
+fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), ScenarioError> {
+    let (kind, known) = (path.kind.name(), path.kind.parameters());
+    for given in path.given() {
+        require(known.contains(&given), &at.key(given), || {
+            format!("a {kind} has no such parameter; it has {}", known.join(", "))
+        })?;
+    }
+    for needed in path.kind.required() {
+        require(path.given().contains(needed), &at.key(needed), || format!("a {kind} needs this"))?;
+    }
+    for (key, index, number) in path.numbers() {
+        believable(&index.map_or_else(|| at.key(key), |index| at.key(key).index(index)), number)?;
+    }
+    if let Some(radius) = &path.radius {
+        require(radius.value() > 0.0, &at.key("radius"), || {
+            format!("{radius} m is not a radius; it is positive")
+        })?;
+    }
+    if path.kind == PathKind::Line {
+        let ends = [&path.to, &path.displacement].iter().filter(|end| end.is_some()).count();
+        let problem =
+            || "a line ends at one of `to` (world) and `displacement` (from the tip); give one".to_owned();
+        require(ends == 1, at, problem)?;
+    }
+    check_points(at, path, task)?;
+    path.turn.as_ref().map_or(Ok(()), |turn| check_turn(&at.key("turn"), turn, task))
+}
+
+/// Points have x, y and z; in the plane the z may be left out.
+fn check_points(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), ScenarioError> {
+    for (name, value) in [("to", &path.to), ("displacement", &path.displacement), ("center", &path.center)] {
+        value.as_ref().map_or(Ok(()), |value| check_point(&at.key(name), value, task))?;
+    }
+    Ok(())
+}
+
+fn check_point(at: &KeyPath, value: &[Real], task: TaskKind) -> Result<(), ScenarioError> {
+    let planar = task == TaskKind::PositionXy;
+    require(value.len() == 3 || (planar && value.len() == 2), at, || {
+        format!("expected {} numbers, got {}", if planar { "2 or 3" } else { "3" }, value.len())
+    })
+}
+
+fn check_turn(at: &KeyPath, turn: &TurnSpec, task: TaskKind) -> Result<(), ScenarioError> {
+    require(task == TaskKind::Pose, at, || "only a task \"pose\" has an orientation to turn".to_owned())?;
+    believable(&at.key("angle"), &turn.angle)?;
+    let length = turn.axis.iter().map(|x| x.value() * x.value()).sum::<f64>().sqrt();
+    require(length > 0.0 && length.is_finite(), &at.key("axis"), || {
+        format!("an axis of length {length} points nowhere; give a direction such as [0, 0, 1]")
+    })
+}

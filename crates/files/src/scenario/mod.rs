@@ -1,0 +1,42 @@
+//! Scenarios: what to plan, as a TOML file that people write and programs generate.
+//!
+//! [`ScenarioText`] is the text of a file with the positions of its keys and the values laid over it from
+//! outside; [`Scenario`] is what it says. Every refusal is a [`ScenarioError`] that names the key and its place.
+
+mod build;
+mod check;
+mod document;
+mod error;
+mod files;
+mod formulas;
+mod key_path;
+mod lock_position;
+mod model;
+mod noise_spec;
+mod overrides;
+mod path_spec;
+mod real;
+mod robot_edits;
+mod robots;
+mod staging;
+mod start_pose;
+mod study_spec;
+pub mod suite;
+#[cfg(test)]
+mod tests;
+
+pub use document::{ScenarioText, read_text};
+pub use error::{ErrorKind, Place, ScenarioError, suggestion};
+pub use formulas::{FormulaRows, row_refusals};
+pub use key_path::{KeyPath, Step};
+pub use kinstep::math::{ExpressionError, evaluate};
+pub use kinstep::task::{Plane, TaskKind};
+pub use lock_position::LockPosition;
+pub use model::{ArmSpec, LawKind, LawSpec, Mount, Scenario, Start};
+pub use noise_spec::NoiseSpec;
+pub use path_spec::{PathKind, PathSpec, TimeLawKind, TurnSpec};
+pub use real::Real;
+pub use robot_edits::{calibrated, tool_name};
+pub use robots::RobotSource;
+pub use start_pose::{OnPath, StartPose, TipPose};
+pub use study_spec::{MeasureKind, Precision, ProblemSpec, StudySpec};

@@ -1,0 +1,186 @@
+//! What a scenario says, as plain values.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::lock_position::LockPosition;
+use super::noise_spec::NoiseSpec;
+use super::path_spec::PathSpec;
+use super::real::{Real, exactly};
+use super::start_pose::StartPose;
+use super::study_spec::{ProblemSpec, StudySpec};
+use kinstep::task::TaskKind;
+
+/// A plan to be made: how time is discretised, what moves, along what, and how redundancy is resolved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, expecting = "a scenario")]
+pub struct Scenario {
+    /// Sampling gap in s. Where it does not divide `duration` it is adjusted so that it does, with a warning.
+    pub sigma: Real,
+    /// Length of the motion in s.
+    pub duration: Real,
+    /// Id of the formula row, built-in or from `formulas`. Default: the built-in row that does best in the standard duty.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula: Option<String>,
+    /// How the first states are made. Default: the cheapest Runge-Kutta start of sufficient order.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Start>,
+    /// Files with further formula rows, relative to the scenario's own file, or such rows themselves as text.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub formulas: Vec<String>,
+    /// Permit a step size h outside the formula's feedback range, to study what happens there.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub allow_unstable: bool,
+    /// How redundancy is resolved, and how strongly the task error is fed back.
+    #[serde(default)]
+    pub law: LawSpec,
+    /// The noise that the loop suffers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<NoiseSpec>,
+    /// How the order of the run is studied by `kinstep order`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub study: Option<StudySpec>,
+    /// An initial value problem in place of arms, for `kinstep order`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<ProblemSpec>,
+    /// The arms, which move in synchrony.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub arm: Vec<ArmSpec>,
+}
+
+/// How the first states of a run are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Start {
+    /// Euler steps with the same h, as in the paper: leaves a residual of (sigma^2/2) phi''.
+    Paper,
+    /// Rows of the same family of rising order; begins like `paper`.
+    Ramp,
+    /// The classical Runge-Kutta method of order 4.
+    Rk4,
+    /// A Runge-Kutta method of order 8.
+    Rk8,
+}
+
+/// How redundancy is resolved, and how strongly the task error is fed back. At most one of `h` and `gain`;
+/// without either, h is the formula's optimum.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, expecting = "a table such as { h = 0.4 }")]
+pub struct LawSpec {
+    /// The law.
+    #[serde(default)]
+    pub kind: LawKind,
+    /// Feedback step h, dimensionless: held fixed, the task error falls like sigma^(p+1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub h: Option<Real>,
+    /// Feedback gain k in 1/s: h = sigma k gamma(1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Real>,
+    /// Smallest singular value of the task Jacobian that is inverted undamped; below it the inverse is damped,
+    /// and the report says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<Real>,
+}
+
+/// The laws that a scenario can name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum LawKind {
+    /// The joint velocity of least norm, by the pseudoinverse of the task Jacobian.
+    #[default]
+    Pseudoinverse,
+}
+
+/// One arm: a chain of a robot, where it stands, how it begins and what its tip follows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table [[arm]] with name, robot, base, tip, task, q0 or start_pose, and path"
+)]
+pub struct ArmSpec {
+    /// Name of the arm: letters, digits, `-` and `_`.
+    pub name: String,
+    /// A built-in robot by name, a path to a URDF file or a Denavit-Hartenberg table, relative to the scenario's own
+    /// file, or URDF text.
+    pub robot: String,
+    /// Link at which the chain begins.
+    pub base: String,
+    /// Link at which the chain ends: what follows the path.
+    pub tip: String,
+    /// What of the tip follows the path.
+    pub task: TaskKind,
+    /// Joint positions at the start in rad or m, one per joint of the chain in its order. Beside `start_pose`: positions
+    /// that those found for it should be near.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub q0: Vec<Real>,
+    /// Where the tip starts, in place of `q0`: joint positions are solved for, within the limits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start_pose: Option<StartPose>,
+    /// Pose of `base` in the world. Default: the world's own.
+    #[serde(default, skip_serializing_if = "Mount::is_identity")]
+    pub mount: Mount,
+    /// Pose of the tool's tip in the link `tip`: what then follows the path. Default: none.
+    #[serde(default, skip_serializing_if = "Mount::is_identity")]
+    pub tool: Mount,
+    /// A file of corrections of this particular arm's joints (tables `[joint.NAME]` with `xyz`, `rpy`, `zero`,
+    /// `reversed`), relative to the scenario's own file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<String>,
+    /// Joints of the robot that are held still, by name; on the arm's path they count as fixed.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub lock: BTreeMap<String, LockPosition>,
+    /// Whether the arm has to move by itself: a joint in common with another arm is then refused rather than shared.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub independent: bool,
+    /// Whether joints without a `<limit>` element move without limits. Default: no chain passes through them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub assume_unlimited: bool,
+    /// The path of the tip.
+    pub path: PathSpec,
+}
+
+/// A pose in the world, or in the link that something is put on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, expecting = "a table such as { xyz = [0, 0, 0], rpy = [0, 0, 0] }")]
+pub struct Mount {
+    /// Position in m.
+    #[serde(default = "zeros", deserialize_with = "exactly")]
+    pub xyz: [Real; 3],
+    /// Roll, pitch and yaw about fixed axes in rad, as in URDF.
+    #[serde(default = "zeros", deserialize_with = "exactly")]
+    pub rpy: [Real; 3],
+}
+
+fn zeros() -> [Real; 3] {
+    [0.0, 0.0, 0.0].map(Real::from)
+}
+
+impl Default for Mount {
+    fn default() -> Self {
+        Self { xyz: zeros(), rpy: zeros() }
+    }
+}
+
+impl Mount {
+    pub(super) fn is_identity(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl Scenario {
+    /// Returns the scenario as TOML that reads back as the same scenario.
+    #[expect(
+        clippy::missing_panics_doc,
+        reason = "a scenario is tables, text and numbers, which TOML can write"
+    )]
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("a scenario has only tables with text keys, finite numbers and text")
+    }
+}

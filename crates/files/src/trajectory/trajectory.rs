@@ -1,0 +1,147 @@
+//! The samples of all arms on one clock.
+
+use nalgebra::Vector6;
+
+use super::About;
+use kinstep::planner::{Arm, ArmPlan, Plan};
+
+/// What the joints of one arm do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmTrajectory {
+    /// The arm's name.
+    pub name: String,
+    /// Its joints, in the order of the entries of a sample.
+    pub joints: Vec<String>,
+    /// Joint positions [rad or m], sample after sample.
+    pub positions: Vec<f64>,
+    /// Joint velocities [rad/s or m/s], sample after sample: of a plan the feedforward `J^+ phi'`. Empty where unknown.
+    pub velocities: Vec<f64>,
+    /// The norm of the task error of every sample (m and rad together). Empty where unknown.
+    pub errors: Vec<f64>,
+}
+
+impl ArmTrajectory {
+    /// An arm without joints and samples.
+    pub(super) fn empty(name: &str) -> Self {
+        let (joints, positions) = (Vec::new(), Vec::new());
+        Self { name: name.to_owned(), joints, positions, velocities: Vec::new(), errors: Vec::new() }
+    }
+
+    /// The joint positions [rad or m] of sample `n`.
+    ///
+    /// # Panics
+    /// If there is no sample `n`.
+    pub fn position(&self, n: usize) -> &[f64] {
+        let joints = self.joints.len();
+        &self.positions[n * joints..(n + 1) * joints]
+    }
+
+    /// Returns the same with the joints in that order, where they are the same joints; unchanged where they are not.
+    #[must_use]
+    pub fn in_order(&self, joints: &[&str]) -> Self {
+        let ordered = self.with_joints(joints);
+        let is_same = [ordered.joints.len(), joints.len()] == [self.joints.len(); 2];
+        if is_same { ordered } else { self.clone() }
+    }
+
+    /// Returns the same with those of its joints that are named, in the order of the names.
+    #[must_use]
+    pub fn with_joints(&self, joints: &[&str]) -> Self {
+        let place = |name: &&str| self.joints.iter().position(|own| own == name);
+        let places: Vec<usize> = joints.iter().filter_map(place).collect();
+        let taken = |values: &[f64]| -> Vec<f64> {
+            let rows = values.chunks_exact(self.joints.len().max(1));
+            rows.flat_map(|row| places.iter().map(|&place| row[place])).collect()
+        };
+        Self {
+            name: self.name.clone(),
+            joints: places.iter().map(|&place| self.joints[place].clone()).collect(),
+            positions: taken(&self.positions),
+            velocities: taken(&self.velocities),
+            errors: self.errors.clone(),
+        }
+    }
+
+    /// The joint velocities [rad/s or m/s] of sample `n`, where they are known.
+    pub fn velocity(&self, n: usize) -> Option<&[f64]> {
+        let joints = self.joints.len();
+        self.velocities.get(n * joints..(n + 1) * joints).filter(|velocity| !velocity.is_empty())
+    }
+
+    /// The [task errors](Arm::task_error) (linear \[m\]; angular \[rad\]) of the samples, at `times` \[s\], of an arm with the
+    /// same joints.
+    ///
+    /// # Panics
+    /// If there are fewer samples than times, or another number of joints.
+    pub fn task_errors(&self, arm: &Arm, times: &[f64]) -> Vec<Vector6<f64>> {
+        let mut scratch = arm.chain().scratch();
+        let at = |(n, t): (usize, &f64)| arm.task_error(*t, self.position(n), &mut scratch);
+        times.iter().enumerate().map(at).collect()
+    }
+}
+
+impl From<&ArmPlan> for ArmTrajectory {
+    fn from(arm: &ArmPlan) -> Self {
+        Self {
+            name: arm.name.clone(),
+            joints: arm.joints.clone(),
+            positions: arm.positions.clone(),
+            velocities: arm.velocities.clone(),
+            errors: arm.errors.iter().map(Vector6::norm).collect(),
+        }
+    }
+}
+
+/// Joint trajectories of all arms at common times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trajectory {
+    /// What made it, where that is known.
+    pub about: Option<About>,
+    /// The times of the samples \[s\].
+    pub times: Vec<f64>,
+    /// What each arm does; every arm has all samples.
+    pub arms: Vec<ArmTrajectory>,
+}
+
+impl Trajectory {
+    /// Returns the trajectory of a plan.
+    pub fn of(plan: &Plan, about: Option<About>) -> Self {
+        Self {
+            about,
+            times: (0..plan.samples()).map(|n| plan.time(n)).collect(),
+            arms: plan.arms.iter().map(ArmTrajectory::from).collect(),
+        }
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.times.len()
+    }
+
+    /// The names of the columns of a table of the samples: `t`, then of each arm `ARM.JOINT` joint by joint,
+    /// `ARM.JOINT.velocity`, and `ARM.error`; what is not known has no columns.
+    pub fn columns(&self) -> Vec<String> {
+        let mut names = vec!["t".to_owned()];
+        for arm in &self.arms {
+            for (suffix, known) in [("", true), (".velocity", !arm.velocities.is_empty())] {
+                let joints = arm.joints.iter().filter(|_| known);
+                names.extend(joints.map(|joint| format!("{}.{joint}{suffix}", arm.name)));
+            }
+            if !arm.errors.is_empty() {
+                names.push(format!("{}.error", arm.name));
+            }
+        }
+        names
+    }
+
+    /// The entries of sample `n` in the order of [`Trajectory::columns`], without the time.
+    ///
+    /// # Panics
+    /// If there is no sample `n`.
+    pub fn values(&self, n: usize) -> impl Iterator<Item = f64> + '_ {
+        self.arms.iter().flat_map(move |arm| {
+            let velocities = arm.velocity(n).unwrap_or_default();
+            arm.position(n).iter().chain(velocities).chain(arm.errors.get(n)).copied()
+        })
+    }
+}

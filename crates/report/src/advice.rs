@@ -1,0 +1,73 @@
+//! What would make a plan better.
+
+use kinstep::formula::{Formula, FormulaTable};
+use kinstep::math::number_text;
+use kinstep::planner::{LimitKind, Plan, PlanStatus};
+use kinstep_files::scenario::Scenario;
+
+/// Something to try next.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Suggestion {
+    /// Arguments of `kinstep plan` beside the scenario.
+    pub arguments: String,
+    /// What that is good for.
+    pub reason: String,
+}
+
+impl Suggestion {
+    /// Returns a suggestion of these arguments for that reason.
+    pub fn new(arguments: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self { arguments: arguments.into(), reason: reason.into() }
+    }
+}
+
+/// Returns what to try next after this plan of `scenario`, whose formula stands in `table`.
+pub fn suggestions(plan: &Plan, table: &FormulaTable, scenario: &Scenario) -> Vec<Suggestion> {
+    let mut next = Vec::new();
+    let Ok(formula) = table.get(&plan.formula) else { return next };
+    let best = formula.optimum().map(|optimum| format!("{:.3}", optimum.h));
+    if plan.status == PlanStatus::Diverged && !formula.feedback_range().contains(plan.h) {
+        next.extend(
+            best.map(|h| Suggestion::new(format!("--set law.h={h}"), "the formula's best feedback step")),
+        );
+    }
+    if !plan.is_completed() {
+        return next;
+    }
+    if let Some(excess) = velocity_excess(plan) {
+        let longer = (scenario.duration.value() * excess * 1.05).ceil();
+        next.push(Suggestion::new(
+            format!("--set duration={longer}"),
+            "slow enough for the joints' velocity limits",
+        ));
+    }
+    if errors_follow_the_order(plan, formula) {
+        let halvings = formula.order() + usize::from(scenario.law.gain.is_none());
+        let (fold, held) =
+            (1_u64 << halvings.min(60), if scenario.law.gain.is_some() { "gain" } else { "h" });
+        let why = format!("errors about {fold} times smaller: order {} at the same {held}", formula.order());
+        next.push(Suggestion::new(format!("--set sigma={}", number_text(plan.sigma / 2.0)), why));
+    }
+    if plan.formula != "split-ab6" {
+        let arguments = "--set formula=split-ab6 --set law.h=1 --set start=rk8";
+        next.push(Suggestion::new(arguments, "a deadbeat loop of order 6"));
+    }
+    next
+}
+
+/// Whether a smaller gap may be promised to make the errors smaller: they stand above the round-off and are not those of
+/// noise, and the loop is fast enough to settle within the run.
+fn errors_follow_the_order(plan: &Plan, formula: &Formula) -> bool {
+    const ROUND_OFF: f64 = 1e-13;
+    const SETTLED: f64 = 1e-3;
+    let worst = plan.arms.iter().map(|arm| arm.max_error).fold(0.0, f64::max);
+    let left_over = formula.spectral_radius(plan.h).powf(plan.steps as f64 / 2.0);
+    worst > ROUND_OFF && left_over < SETTLED && plan.noise.is_none()
+}
+
+/// By what factor the worst joint velocity exceeds its limit, where one does: velocities fall like 1/duration.
+fn velocity_excess(plan: &Plan) -> Option<f64> {
+    let all = plan.arms.iter().flat_map(|arm| &arm.violations);
+    let excess = all.filter(|v| v.kind == LimitKind::Velocity).map(|v| (v.value / v.limit).abs());
+    excess.filter(|excess| excess.is_finite()).reduce(f64::max)
+}

@@ -1,0 +1,144 @@
+//! A plan as one JSON document.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use super::PlanFormat;
+use kinstep::planner::{self, ArmPlan, Plan};
+
+/// The summary of a plan as JSON: how it ended, errors and limits by arm. The samples are not in it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PlanJson;
+
+impl PlanFormat for PlanJson {
+    fn write(&self, plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
+        serde_json::to_writer_pretty(&mut *out, &Document::of(plan)).map_err(io::Error::from)?;
+        writeln!(out)
+    }
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    status: &'static str,
+    reason: Option<&'a str>,
+    formula: &'a str,
+    sigma: f64,
+    h: f64,
+    start: &'static str,
+    steps: usize,
+    samples: usize,
+    noise: Option<Noise>,
+    arms: Vec<Arm<'a>>,
+    shared: Vec<Shared<'a>>,
+    warnings: &'a [String],
+}
+
+/// The standard deviations of the noise that the loop suffered.
+#[derive(Serialize)]
+struct Noise {
+    seed: u64,
+    position: f64,
+    orientation: f64,
+    linear_velocity: f64,
+    angular_velocity: f64,
+    joints: f64,
+}
+
+/// Arms that were resolved as one system because they move joints in common.
+#[derive(Serialize)]
+struct Shared<'a> {
+    arms: &'a [String],
+    joints: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Arm<'a> {
+    name: &'a str,
+    joints: &'a [String],
+    max_error: f64,
+    max_error_component: f64,
+    max_error_steady: f64,
+    rms_error_steady: f64,
+    max_position_error: f64,
+    max_orientation_error: f64,
+    smallest_singular_value: f64,
+    damped_samples: usize,
+    limits: Limits<'a>,
+    start_pose: Option<StartPose<'a>>,
+}
+
+/// The initial joint positions, where they were solved for, and how far they leave the tip from where it was asked to be.
+#[derive(Serialize)]
+struct StartPose<'a> {
+    q0: &'a [f64],
+    distance: f64,
+}
+
+#[derive(Serialize)]
+struct Limits<'a> {
+    ok: bool,
+    violations: Vec<Violation<'a>>,
+}
+
+#[derive(Serialize)]
+struct Violation<'a> {
+    joint: &'a str,
+    kind: &'static str,
+    t: f64,
+    value: f64,
+    limit: f64,
+}
+
+impl<'a> Document<'a> {
+    fn of(plan: &'a Plan) -> Self {
+        Self {
+            status: plan.status.name(),
+            reason: plan.reason.as_deref(),
+            formula: &plan.formula,
+            sigma: plan.sigma,
+            h: plan.h,
+            start: plan.start,
+            steps: plan.steps,
+            samples: plan.samples(),
+            noise: plan.noise.as_ref().map(Noise::of),
+            arms: plan.arms.iter().map(Arm::of).collect(),
+            shared: plan.shared.iter().map(|s| Shared { arms: &s.arms, joints: &s.joints }).collect(),
+            warnings: &plan.warnings,
+        }
+    }
+}
+
+impl Noise {
+    fn of(noise: &planner::Noise) -> Self {
+        let planner::Noise { seed, position, orientation, linear_velocity, angular_velocity, joints } =
+            *noise;
+        Self { seed, position, orientation, linear_velocity, angular_velocity, joints }
+    }
+}
+
+impl<'a> Arm<'a> {
+    fn of(arm: &'a ArmPlan) -> Self {
+        let violations = arm.violations.iter().map(|v| Violation {
+            joint: &v.joint,
+            kind: v.kind.name(),
+            t: v.t,
+            value: v.value,
+            limit: v.limit,
+        });
+        Self {
+            name: &arm.name,
+            joints: &arm.joints,
+            max_error: arm.max_error,
+            max_error_component: arm.max_error_component,
+            max_error_steady: arm.max_error_steady,
+            rms_error_steady: arm.rms_error_steady,
+            max_position_error: arm.max_position_error,
+            max_orientation_error: arm.max_orientation_error,
+            smallest_singular_value: arm.smallest_singular_value.0,
+            damped_samples: arm.damped_samples,
+            limits: Limits { ok: arm.violations.is_empty(), violations: violations.collect() },
+            start_pose: arm.start_distance.map(|distance| StartPose { q0: arm.position(0), distance }),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! A plan for people.
+
+use std::io::{self, Write};
+
+use super::{PlanFormat, Table, short, sparkline};
+use kinstep::math::number_text;
+use kinstep::planner::{ArmPlan, Noise, Plan};
+
+/// Width of the curves of the task errors [characters].
+const CURVE: usize = 64;
+
+/// What was done, a row per arm, the course of the errors, limits crossed and warnings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PlanText;
+
+impl PlanFormat for PlanText {
+    fn write(&self, plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
+        let names: Vec<&str> = plan.arms.iter().map(|arm| arm.name.as_str()).collect();
+        let arms = if names.len() == 1 { "arm" } else { "arms in synchrony" };
+        writeln!(
+            out,
+            "{} {arms} ({}): {} steps of {} s",
+            names.len(),
+            names.join(", "),
+            plan.steps,
+            number_text(plan.sigma)
+        )?;
+        writeln!(out, "formula {}, h = {}, start {}", plan.formula, short(plan.h), plan.start)?;
+        plan.noise.iter().try_for_each(|noise| writeln!(out, "{}", disturbed_by(noise)))?;
+        for shared in &plan.shared {
+            let (arms, joints) = (shared.arms.join(" and "), shared.joints.join(", "));
+            writeln!(out, "{arms} share {joints}: solved as one system")?;
+        }
+        match &plan.reason {
+            None => writeln!(out, "{}\n", plan.status.name())?,
+            Some(reason) => writeln!(out, "stopped, {}: {reason}\n", plan.status.name())?,
+        }
+        write!(out, "{}", errors(plan))?;
+        if plan.noise.is_some() {
+            writeln!(out, "\nroot mean square of the error in the second half: {}", mean_squares(plan))?;
+        }
+        plan.arms.iter().try_for_each(|arm| start(arm, out))?;
+        writeln!(out, "\ntask error over time, logarithmic:")?;
+        let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+        for arm in &plan.arms {
+            let norms: Vec<f64> = arm.errors.iter().map(nalgebra::Vector6::norm).collect();
+            writeln!(out, "  {:width$}  {}", arm.name, sparkline(&norms, CURVE))?;
+        }
+        if !plan.is_within_limits() {
+            write!(out, "\n{}", violations(&plan.arms))?;
+        }
+        plan.warnings.iter().try_for_each(|warning| writeln!(out, "\nwarning: {warning}"))
+    }
+}
+
+/// Says what noise a loop suffered.
+pub(super) fn disturbed_by(noise: &Noise) -> String {
+    let loud = noise.deviations().into_iter().filter(|deviation| deviation.3 > 0.0);
+    let loud: Vec<_> = loud.map(|(_, of, unit, value)| format!("{} {unit} in {of}", short(value))).collect();
+    format!("white noise of seed {}: {}", noise.seed, loud.join(", "))
+}
+
+/// The root mean squares of the errors of all arms, where they are steady.
+pub(super) fn mean_squares(plan: &Plan) -> String {
+    let figures = plan.arms.iter().map(|arm| format!("{} {:.2e}", arm.name, arm.rms_error_steady));
+    figures.collect::<Vec<_>>().join(", ")
+}
+
+/// Where an arm begins, if that was solved for.
+fn start(arm: &ArmPlan, out: &mut dyn Write) -> io::Result<()> {
+    let Some(distance) = arm.start_distance else { return Ok(()) };
+    let q0 = arm.position(0).iter().map(|q| format!("{q:.4}")).collect::<Vec<_>>().join(", ");
+    writeln!(out, "\n{} starts at q0 = [{q0}], found for its start_pose to {distance:.1e}", arm.name)
+}
+
+fn errors(plan: &Plan) -> Table {
+    let mut table = Table::new([
+        "arm",
+        "joints",
+        "max error",
+        "second half",
+        "position [m]",
+        "orientation [rad]",
+        "limits",
+    ]);
+    for arm in &plan.arms {
+        let limits = match arm.violations.len() {
+            0 => "kept".to_owned(),
+            count => format!("{count} crossed"),
+        };
+        let errors = [arm.max_error, arm.max_error_steady, arm.max_position_error, arm.max_orientation_error];
+        let cells = [arm.name.clone(), arm.joints.len().to_string()];
+        table.row(cells.into_iter().chain(errors.map(|e| format!("{e:.2e}"))).chain([limits]));
+    }
+    table
+}
+
+fn violations(arms: &[ArmPlan]) -> Table {
+    let mut table = Table::new(["limit crossed", "joint", "of", "at worst", "limit", "t [s]"]);
+    for arm in arms {
+        for v in &arm.violations {
+            let figures = [v.value, v.limit, v.t].map(short);
+            table.row(
+                [arm.name.clone(), v.joint.clone(), v.kind.name().to_owned()].into_iter().chain(figures),
+            );
+        }
+    }
+    table
+}

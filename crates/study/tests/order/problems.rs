@@ -1,0 +1,172 @@
+//! The initial value problems that come with the library: their orders, their published values, and what is refused.
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
+
+use kinstep_files::scenario::{FormulaRows, Scenario, ScenarioText, suite};
+use kinstep_study::{Ladder, Reference, RowStudy, ScenarioStudy, Undecidable, Verdict};
+
+fn scenario(text: &str, set: &[&str]) -> Scenario {
+    let mut text = ScenarioText::parse(text).unwrap();
+    for assignment in set {
+        text.set(assignment).unwrap();
+    }
+    text.scenario().unwrap()
+}
+
+fn study(name: &str, set: &[&str], ids: &[&str]) -> Vec<RowStudy> {
+    let scenario = scenario(suite::text(name).unwrap(), set);
+    let ids: Vec<String> = ids.iter().map(|&id| id.to_owned()).collect();
+    ScenarioStudy::new(&scenario, None, &FormulaRows::default(), &ids).unwrap().run().unwrap()
+}
+
+#[test]
+fn every_problem_shows_the_order_of_its_row() {
+    assert!(suite::names().len() >= 20);
+    for name in suite::names() {
+        for row in study(name, &[], &[]) {
+            assert!(row.seen.verdict.is_confirmed(), "{name}: {}\n{}", row.seen.verdict, row.report);
+            let fit = row.seen.fit.unwrap();
+            assert!((fit.order - row.order as f64).abs() < 0.3, "{name}: {fit:?}");
+        }
+    }
+}
+
+/// Solutions at t = 20 as published with the test set, to the digits of a double.
+const PUBLISHED: [(&str, &[f64]); 14] = [
+    ("detest_a1", &[2.061_153_353_012_535e-9]),
+    ("detest_a2", &[2.182_178_902_359_887e-1]),
+    ("swing", &[2.491_650_271_850_414]),
+    ("detest_a4", &[1.773_016_648_131_483e1]),
+    ("detest_a5", &[-7.887_826_688_964_196e-1]),
+    ("lotka_volterra", &[6.761_876_008_576_667e-1, 1.860_816_099_640_036e-1]),
+    ("detest_b2", &[1.000_000_001_030_576, 1.0, 9.999_999_989_694_235e-1]),
+    ("detest_b3", &[2.061_153_488_557_776e-9, 5.257_228_022_048_349e-2, 9.474_277_177_183_63e-1]),
+    ("detest_b4", &[9.826_950_928_005_993e-1, 2.198_447_081_694_832, 9.129_452_507_276_399e-1]),
+    ("detest_b5", &[-9.396_570_798_729_192e-1, -3.421_177_754_000_779e-1, 7.414_126_596_199_957e-1]),
+    (
+        "detest_d1",
+        &[
+            2.198_835_352_008_397e-1,
+            9.427_076_846_341_813e-1,
+            -9.787_659_841_058_176e-1,
+            3.287_977_990_962_036e-1,
+        ],
+    ),
+    ("detest_e1", &[1.456_723_600_728_308e-1, -9.883_500_195_574_063e-2]),
+    ("van_der_pol", &[2.008_149_762_174_948, -4.250_887_527_320_057e-2]),
+    ("detest_e5", &[1.411_797_390_542_629e1, 2.400_000_000_000_002]),
+];
+
+#[test]
+fn the_extrapolation_agrees_with_the_published_values_of_the_test_set() {
+    for (name, published) in PUBLISHED {
+        let equations = scenario(suite::text(name).unwrap(), &[]).equations().unwrap().unwrap();
+        let reference = Reference::extended(&equations, &Ladder::from_steps(20.0, [40]).unwrap(), 1e-28);
+        assert!(reference.trouble.is_none() && reference.uncertainty < 1e-20, "{name}");
+        for (found, published) in reference.end().iter().zip(published) {
+            // What was published was rounded, and computed in doubles.
+            assert!(
+                (found - published).abs() < 2e-13 * published.abs().max(1.0),
+                "{name}: {found:e} {published:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn closed_orbits_close() {
+    for (name, tolerance) in [("kepler", 1e-14), ("arenstorf", 1e-9)] {
+        let scenario = scenario(suite::text(name).unwrap(), &[]);
+        let equations = scenario.equations().unwrap().unwrap();
+        let ladder = Ladder::from_steps(scenario.duration.value(), [64]).unwrap();
+        let end = Reference::extended(&equations, &ladder, 1e-28).end();
+        for (end, begin) in end.iter().zip(equations.initial::<f64>()) {
+            assert!((end - begin).abs() < tolerance, "{name}: {end} and {begin}");
+        }
+    }
+}
+
+#[test]
+fn the_exact_solutions_satisfy_their_equations() {
+    for name in suite::names() {
+        let equations = scenario(suite::text(name).unwrap(), &[]).equations().unwrap().unwrap();
+        let ladder = Ladder::from_steps(5.0, [10]).unwrap();
+        let Some(exact) = Reference::exact(&equations, &ladder) else { continue };
+        let found = Reference::extended(&equations, &ladder, 1e-30);
+        for (exact, found) in exact.end().iter().zip(found.end()) {
+            assert!((exact - found).abs() <= 1e-15 * exact.abs(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn orders_six_to_eight_show_in_extended_precision_where_doubles_can_not() {
+    let ids = ["ab6", "ab7", "ab8"];
+    let fine = ["study.steps=[3200, 4800, 6400, 9600]"];
+    for row in study("kepler", &fine, &ids[2..]) {
+        assert!(!row.seen.verdict.is_decided(), "{}", row.report);
+    }
+    for row in study("kepler", &[&fine[..], &["study.precision=extended"]].concat(), &ids) {
+        assert!(row.seen.verdict.is_confirmed(), "{}: {}", row.id, row.report);
+        assert!(row.seen.floor < 1e-24 && row.seen.errors[3] < 1e-14, "{}: {}", row.id, row.report);
+    }
+}
+
+#[test]
+fn all_references_lead_to_one_verdict() {
+    for reference in ["exact", "extended", "ab8"] {
+        let set = [format!("study.reference={reference}"), "study.precision=extended".to_owned()];
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let rows = study("swing", &[&set[..], &["study.steps=[200, 300, 400, 600]"]].concat(), &["ab4"]);
+        assert!(rows[0].seen.verdict.is_confirmed(), "{reference}: {}", rows[0].report);
+    }
+}
+
+#[test]
+fn an_end_point_can_show_more_than_the_way_there() {
+    // Over whole periods of a damped loop errors of opposite sign can cancel; the maximum never lies.
+    for (measure, part) in [("maximum", 0), ("steady", 1), ("end-point", 2), ("mean-square", 3)] {
+        let set = format!("study.measure={measure}");
+        let rows = study("linear", &[&set], &["ab3"]);
+        let keys: Vec<&str> = rows[0].report.parts().map(|(key, _)| key).collect();
+        assert_eq!(rows[0].report.parts().nth(part).unwrap().1, &rows[0].seen, "{measure}: {keys:?}");
+        assert!(rows[0].seen.verdict.is_confirmed(), "{measure}: {}", rows[0].report);
+    }
+}
+
+#[test]
+fn without_numbers_there_is_no_verdict() {
+    let undecided = |name: &str, set: &[&str]| match study(name, set, &["ab4"]).remove(0).seen.verdict {
+        Verdict::Undecidable(why) => why,
+        verdict => panic!("{name} {set:?}: {verdict}"),
+    };
+    assert_eq!(undecided("swing", &["study.steps=[100]"]), Undecidable::ShortLadder { rungs: 1 });
+    assert_eq!(undecided("swing", &["study.steps=[100, 200]"]), Undecidable::ShortLadder { rungs: 2 });
+    let below = undecided("swing", &["study.steps=[20000, 40000, 80000]"]);
+    assert!(matches!(below, Undecidable::AtFloor { floor } if floor < 1e-11), "{below}");
+    // With so large a rate the recursion is unstable and every run ends among the infinite.
+    let stiff = ["problem.parameters.k=1e6", "study.steps=[600, 900, 1200]"];
+    assert_eq!(undecided("prothero_robinson", &stiff), Undecidable::Stopped { stopped: 3, rungs: 3 });
+    let blows_up = "sigma = 0.01\nduration = 2.0\nformula = \"ab4\"\n[problem]\nequations = [\"x' = x^2\"]\ninitial = [\"x = 1\"]";
+    let scenario = scenario(blows_up, &[]);
+    let rows = ScenarioStudy::new(&scenario, None, &FormulaRows::default(), &[]).unwrap().run().unwrap();
+    assert!(!rows[0].seen.verdict.is_decided(), "{}", rows[0].report);
+    assert!(rows[0].report.notes[0].contains("does not converge"), "{}", rows[0].report);
+}
+
+#[test]
+fn rows_that_may_not_run_and_gaps_that_do_not_divide_are_refused() {
+    let refused = |set: &[&str], id: &str| {
+        let scenario = scenario(suite::text("swing").unwrap(), set);
+        let study = ScenarioStudy::new(&scenario, None, &FormulaRows::default(), &[id.to_owned()]);
+        study.unwrap_err().to_string()
+    };
+    assert!(refused(&[], "bad-bdf7").contains("zero-stable"));
+    assert!(refused(&[], "am3").contains("implicit"), "{}", refused(&[], "am3"));
+    assert!(refused(&[], "ab44").contains("ab4"));
+    assert!(refused(&["study.sigmas=[0.7, 0.35]"], "ab4").contains("shortened last step"));
+    assert!(refused(&["study.steps=[200, 100]"], "ab4").contains("coarsest gap first"));
+    let mut endless = ScenarioText::parse(suite::text("swing").unwrap()).unwrap();
+    endless.set("sigma=1e-9").unwrap();
+    assert!(endless.scenario().unwrap_err().to_string().contains("steps"));
+    assert!(refused(&["study.reference=ab44"], "ab4").contains("neither"));
+}

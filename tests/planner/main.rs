@@ -1,0 +1,9 @@
+//! Whole runs of the planner, and the laws and searches that it relies on.
+
+mod inverse;
+mod law_near_singularity;
+mod noise;
+mod paper;
+mod shared;
+mod side_by_side;
+mod stops;
