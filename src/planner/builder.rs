@@ -62,7 +62,7 @@ impl Start {
             Self::Paper => Starter::Paper,
             Self::Ramp => {
                 let table = FormulaTable::builtin();
-                Starter::Ramp(
+                Starter::Rows(
                     (1..formula.steps()).map_while(|known| table.ramp(formula, known).cloned()).collect(),
                 )
             }

@@ -250,7 +250,7 @@ impl ScenarioStudy {
             Some(Start::Rk8) => Starter::Rk8,
             Some(Start::Ramp) => {
                 let rows = (1..row.steps()).map_while(|known| self.table.ramp(row, known).cloned());
-                Starter::Ramp(rows.collect())
+                Starter::Rows(rows.collect())
             }
         }
     }
