@@ -45,6 +45,14 @@ impl<T: Scalar> WeightedRow<T> {
     /// Computes the weights for the step that is to follow.
     #[inline]
     pub(in crate::integrate) fn adapt(&mut self, times: &Times<T>) {
+        if self.varying.is_some() {
+            self.rewrite(times);
+        }
+    }
+
+    /// Apart, so that rows of equal steps pay for a comparison only.
+    #[cold]
+    fn rewrite(&mut self, times: &Times<T>) {
         if let Some(varying) = &mut self.varying {
             varying.write(times, &mut self.weights);
             self.per_step_constant = varying.row.per_step_constant(&varying.ratios);

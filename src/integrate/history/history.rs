@@ -1,5 +1,6 @@
 use super::ring::{BLOCK, Ring};
 use super::times::Times;
+use crate::integrate::field::Field;
 use crate::integrate::scalar::Scalar;
 
 /// Where a component comes from: the index of a history among several, and its index there.
@@ -35,10 +36,10 @@ impl<T: Scalar> History<T> {
         history
     }
 
-    /// Room for the evaluation of the newest state: for `f`, and for `g`, which is empty where the field has none.
-    pub(in crate::integrate) fn push_evaluation(&mut self) -> (T, &[T], &mut [T], &mut [T]) {
+    /// Evaluates the field at the newest state.
+    pub(in crate::integrate) fn evaluate(&mut self, field: &mut impl Field<T>) {
         let g = self.g.as_mut().map_or(&mut [] as &mut [T], Ring::push);
-        (self.times.now(), self.x.get(0), self.f.push(), g)
+        field.evaluate(self.times.now(), self.x.get(0), self.f.push(), g);
     }
 
     /// Takes an evaluation for that of the newest state.
@@ -86,11 +87,14 @@ impl<T: Scalar> History<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::integrate::field::Ode;
 
     fn history(x: [f64; 2]) -> History<f64> {
         let depths = Depths { states: 2, first: 1, second: None };
         let mut history = History::new(depths, Times::uniform(0.0, 0.5), &x);
-        history.push_evaluation().2.copy_from_slice(&[10.0 * x[0], 10.0 * x[1]]);
+        history.evaluate(&mut Ode::new(2, |_t, x: &[f64], f: &mut [f64]| {
+            f.copy_from_slice(&[10.0 * x[0], 10.0 * x[1]]);
+        }));
         history
     }
 

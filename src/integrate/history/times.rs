@@ -5,92 +5,82 @@ use crate::integrate::scalar::Scalar;
 /// At equal steps a time is `t_0 + n sigma`, computed from its index and never accumulated: sums would drift. At varying
 /// steps the times themselves are kept.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::integrate) enum Times<T> {
-    /// `t_n = t_0 + n sigma`.
-    Uniform { t0: T, sigma: T, index: usize },
-    /// The times of the last samples, newest first, and the next step.
-    Stored { times: Vec<T>, step: T, index: usize },
+pub(in crate::integrate) struct Times<T> {
+    index: usize,
+    t0: T,
+    step: T,
+    /// The times of the last samples, newest first, where steps may vary.
+    stored: Option<Vec<T>>,
 }
 
 impl<T: Scalar> Times<T> {
     /// Times in steps of `sigma` from `t0` on.
     pub(in crate::integrate) fn uniform(t0: T, sigma: T) -> Self {
-        Self::Uniform { t0, sigma, index: 0 }
+        Self { index: 0, t0, step: sigma, stored: None }
     }
 
     /// The times of so many samples, from `t0` on, the first step being `step`.
     pub(in crate::integrate) fn stored(t0: T, step: T, capacity: usize) -> Self {
-        Self::Stored { times: vec![t0; capacity.max(1)], step, index: 0 }
+        Self { index: 0, t0, step, stored: Some(vec![t0; capacity.max(1)]) }
     }
 
     /// The index `n` of the newest sample.
-    #[inline]
     pub(in crate::integrate) fn index(&self) -> usize {
-        match self {
-            Self::Uniform { index, .. } | Self::Stored { index, .. } => *index,
-        }
+        self.index
     }
 
     /// The time of the newest sample.
-    #[inline]
     pub(in crate::integrate) fn now(&self) -> T {
-        match self {
-            Self::Uniform { t0, sigma, index } => *t0 + T::from_index(*index) * *sigma,
-            Self::Stored { times, .. } => times[0],
+        match &self.stored {
+            None => self.t0 + T::from_index(self.index) * self.step,
+            Some(times) => times[0],
         }
     }
 
     /// The step that is to follow.
-    #[inline]
     pub(in crate::integrate) fn step(&self) -> T {
-        match self {
-            Self::Uniform { sigma, .. } => *sigma,
-            Self::Stored { step, .. } => *step,
-        }
+        self.step
     }
 
     /// The time of the sample that is to follow.
     pub(in crate::integrate) fn next(&self) -> T {
-        match self {
-            Self::Uniform { t0, sigma, index } => *t0 + T::from_index(*index + 1) * *sigma,
-            Self::Stored { times, step, .. } => times[0] + *step,
+        match &self.stored {
+            None => self.t0 + T::from_index(self.index + 1) * self.step,
+            Some(times) => times[0] + self.step,
         }
     }
 
     /// Makes the step that is to follow another one; at equal steps nothing changes.
     pub(in crate::integrate) fn set_step(&mut self, another: T) {
-        if let Self::Stored { step, .. } = self {
-            *step = another;
+        if self.may_vary() {
+            self.step = another;
         }
     }
 
     /// Whether steps may vary.
     pub(in crate::integrate) fn may_vary(&self) -> bool {
-        matches!(self, Self::Stored { .. })
+        self.stored.is_some()
     }
 
     /// Goes on to the next sample.
     #[inline]
     pub(super) fn commit(&mut self) {
-        match self {
-            Self::Uniform { index, .. } => *index += 1,
-            Self::Stored { times, step, index } => {
-                let next = times[0] + *step;
-                times.rotate_right(1);
-                times[0] = next;
-                *index += 1;
-            }
+        if let Some(times) = &mut self.stored {
+            let next = times[0] + self.step;
+            times.rotate_right(1);
+            times[0] = next;
         }
+        self.index += 1;
     }
 
     /// Writes the ratios of the steps, newest first: entry `i` is the step `i` steps before the next one over the step before
     /// that, `(t_(n+1-i) - t_(n-i)) / (t_(n-i) - t_(n-1-i))`. All are one at equal steps.
     pub(in crate::integrate) fn write_ratios(&self, ratios: &mut [T]) {
-        let Self::Stored { times, step, .. } = self else {
+        let Some(times) = &self.stored else {
             ratios.fill(T::one());
             return;
         };
-        let mut newer = *step;
+        let mut newer = self.step;
         for (i, ratio) in ratios.iter_mut().enumerate() {
             let older = times[i] - times[i + 1];
             *ratio = newer / older;

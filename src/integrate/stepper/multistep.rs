@@ -2,7 +2,7 @@ use super::correction::Correction;
 use super::phase::Phase;
 use crate::formula::{Formula, NotRunnable};
 use crate::integrate::coefficients::{Coefficients, WeightedRow, combine};
-use crate::integrate::controller::{Attempt, Decision, FixedStep, StepController};
+use crate::integrate::controller::{Attempt, Decision, StepController};
 use crate::integrate::error::{IntegrateError, check_length};
 use crate::integrate::field::{Field, Parts};
 use crate::integrate::history::{BLOCK, Depths, History, Origin, Times};
@@ -196,16 +196,17 @@ impl<T: Scalar> Multistep<T> {
     }
 
     /// Evaluates the field at `(t_n, x_n)`, unless that has been done for this state.
+    #[inline]
     pub fn evaluate(&mut self, field: &mut impl Field<T>) {
         if self.phase == Phase::Reached {
-            let (t, x, f, g) = self.history.push_evaluation();
-            field.evaluate(t, x, f, g);
+            self.history.evaluate(field);
             self.phase = Phase::Evaluated;
         }
     }
 
     /// Makes a [candidate](Self::candidate) for the next state of what is known, after [evaluating](Self::evaluate) this one if
     /// that has not been done. To be [corrected](Self::correct).
+    #[inline]
     pub fn predict(&mut self, field: &mut impl Field<T>) -> Status {
         if self.status != Status::Running {
             return self.status;
@@ -222,26 +223,23 @@ impl<T: Scalar> Multistep<T> {
 
     /// Corrects what was [predicted](Self::predict): solves for it, or evaluates and corrects it, as the method says. Nothing
     /// happens in an explicit method, or without a prediction.
+    #[inline]
     pub fn correct(&mut self, field: &mut impl Field<T>) -> Status {
         if self.phase != Phase::Predicted {
             return self.status;
         }
-        let status = match &mut self.correction {
-            None => Status::Running,
-            Some(_) => self.apply_correction(field),
-        };
+        let status = if self.correction.is_some() { self.apply_correction(field) } else { Status::Running };
         self.conclude(status, Phase::Corrected)
     }
 
     /// Makes the [corrected](Self::correct) candidate the next state. Nothing happens without one.
+    #[inline]
     pub fn accept(&mut self) -> Status {
         if self.phase == Phase::Corrected {
             self.history.commit(&self.candidate);
             self.phase = Phase::Reached;
-            let correction = self.correction.as_ref();
-            if let Some((f, g)) = correction.and_then(|correction| correction.kept_evaluation()) {
-                self.history.remember_evaluation(f, g);
-                self.phase = Phase::Evaluated;
+            if self.correction.is_some() {
+                self.keep_evaluation();
             }
         }
         self.status
@@ -273,9 +271,12 @@ impl<T: Scalar> Multistep<T> {
 
     /// Goes from `x_n` to `x_{n+1}` in a step of unchanged length.
     ///
-    /// After a failure nothing moves any more: [`state`](Self::state) stays the last good one.
+    /// After a failure nothing moves any more: [`state`](Self::state) stays the last good one. It is what
+    /// [`step_under`](Self::step_under) does with [`FixedStep`](crate::integrate::controller::FixedStep).
     pub fn step(&mut self, field: &mut impl Field<T>) -> Status {
-        self.step_under(field, &mut FixedStep)
+        self.predict(field);
+        self.correct(field);
+        self.accept()
     }
 
     /// Goes from `x_n` to `x_{n+1}` in the first step that the controller accepts.
@@ -296,6 +297,7 @@ impl<T: Scalar> Multistep<T> {
         self.status
     }
 
+    #[cold]
     fn predict_start(&mut self, field: &mut impl Field<T>) -> bool {
         let Self { starter, history, candidate, level, .. } = self;
         match starter {
@@ -308,6 +310,15 @@ impl<T: Scalar> Multistep<T> {
                 starter.write(field, history, next);
                 next.iter().all(|entry| entry.is_finite())
             }
+        }
+    }
+
+    /// Takes over the evaluation that a pair made at the new time, where its mode keeps that one.
+    fn keep_evaluation(&mut self) {
+        let correction = self.correction.as_ref();
+        if let Some((f, g)) = correction.and_then(|correction| correction.kept_evaluation()) {
+            self.history.remember_evaluation(f, g);
+            self.phase = Phase::Evaluated;
         }
     }
 
