@@ -1,3 +1,5 @@
+use super::scalar::Scalar;
+
 /// Whether a stepper can go on; where it can not, the last good state is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -12,4 +14,11 @@ pub enum Status {
     Rejected,
     /// The controller asked for a step that does not change the time, or that goes backwards or is not finite.
     StepTooSmall,
+}
+
+impl Status {
+    /// Running if all components of a new state are finite.
+    pub(super) fn of_finite<T: Scalar>(state: &[T]) -> Self {
+        if state.iter().all(|entry| entry.is_finite()) { Self::Running } else { Self::NonFinite }
+    }
 }

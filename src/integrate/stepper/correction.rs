@@ -145,7 +145,7 @@ impl<T: Scalar> Correction<T> {
                 }
             }
         }
-        finite(candidate)
+        Status::of_finite(candidate)
     }
 
     /// Solves with what is known, from the candidate as first guess.
@@ -164,7 +164,7 @@ impl<T: Scalar> Correction<T> {
             Solved::NotOffered => self.fixed_point.solve(field, t, next, x),
             solved => solved,
         };
-        if solved == Solved::Converged { finite(x) } else { Status::NotSolved }
+        if solved == Solved::Converged { Status::of_finite(x) } else { Status::NotSolved }
     }
 
     /// Milne's estimate: `factor` times the difference of corrected and predicted state.
@@ -188,8 +188,4 @@ impl<T: Scalar> Corrector<T> {
         let tells_apart = self.has_order_of_predictor && predictor != corrector;
         if tells_apart { corrector / (predictor - corrector) } else { T::one() }
     }
-}
-
-fn finite<T: Scalar>(x: &[T]) -> Status {
-    if x.iter().all(|entry| entry.is_finite()) { Status::Running } else { Status::NonFinite }
 }

@@ -212,12 +212,16 @@ impl<T: Scalar> Multistep<T> {
             return self.status;
         }
         self.evaluate(field);
-        let is_finite = if self.is_started() {
+        let weights = if self.is_started() {
             self.row.adapt(&self.history.times);
-            combine(self.level, &self.row.weights, &self.history, &mut self.candidate)
+            &self.row.weights
         } else {
-            self.predict_start(field)
+            match self.starter.row(self.index()) {
+                Some(weights) => weights,
+                None => return self.start(field),
+            }
         };
+        let is_finite = combine(self.level, weights, &self.history, &mut self.candidate);
         self.conclude(if is_finite { Status::Running } else { Status::NonFinite }, Phase::Predicted)
     }
 
@@ -297,20 +301,15 @@ impl<T: Scalar> Multistep<T> {
         self.status
     }
 
+    /// Makes a candidate by a starter that is no row.
     #[cold]
-    fn predict_start(&mut self, field: &mut impl Field<T>) -> bool {
-        let Self { starter, history, candidate, level, .. } = self;
-        match starter {
-            RunningStarter::Rows(rows) => {
-                let row = &rows[history.times.index().min(rows.len() - 1)];
-                combine(*level, row, history, candidate)
-            }
-            RunningStarter::Apart(starter) => {
-                let next = &mut candidate.as_flattened_mut()[..field.dimension()];
-                starter.write(field, history, next);
-                next.iter().all(|entry| entry.is_finite())
-            }
+    fn start(&mut self, field: &mut impl Field<T>) -> Status {
+        let next = &mut self.candidate.as_flattened_mut()[..field.dimension()];
+        if let RunningStarter::Apart(starter) = &mut self.starter {
+            starter.write(field, &self.history, next);
         }
+        let status = Status::of_finite(next);
+        self.conclude(status, Phase::Predicted)
     }
 
     /// Takes over the evaluation that a pair made at the new time, where its mode keeps that one.
