@@ -242,7 +242,7 @@ joints cost in proportion. The lines go through the first and the last point.
 - Plans of one robot are stepped together, by one stepper, as if they were arms of one plan (`src/planner/batch.rs`).
 - Sines and cosines of all joints are taken four at a time (`src/math/sin_cos.rs`).
 - States are told arm by arm by transposing registers (`src/planner/board.rs`); the history is one pass, of whose sums as many as
-  find room stay in registers (`src/integrate/weights.rs`).
+  find room stay in registers (`src/integrate/coefficients/combination.rs`).
 - Gram matrix, factors and substitutions have static sizes and constant indices; its sums are formed in two passes over the
   columns, so that they stay in registers (`src/math/gram.rs`).
 

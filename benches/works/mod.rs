@@ -1,9 +1,10 @@
 //! The works that are timed and counted, by name.
 
 use kinstep::formula::FormulaTable;
+use kinstep::integrate::Starter;
 use kinstep::math::GramCholesky;
 use kinstep::nalgebra::{IsometryMatrix3, Vector3, Vector6};
-use kinstep::planner::{Arm, Batch, Plan, Planner, Start, run_together};
+use kinstep::planner::{Arm, Batch, Plan, Planner, run_together};
 use kinstep::robot::{Chain, DhTable, Robot, embedded};
 use kinstep::task::{Circle, Motion, Planar, Reference, Sin2, TaskKind};
 use std::f64::consts::FRAC_PI_2;
@@ -167,7 +168,7 @@ fn plans_of(
             Arm::new(format!("arm {i}"), chain.clone(), q.clone(), TaskKind::Pose, motion)
         });
         let builder = Planner::builder().formula(formula).sigma(SIGMA).duration(steps as f64 * SIGMA).h(h);
-        builder.start(Start::Paper).arms(arms).build().expect("a plan within range")
+        builder.start(Starter::Paper).arms(arms).build().expect("a plan within range")
     }
 }
 

@@ -1,4 +1,5 @@
-use super::Scalar;
+use super::affine::{Affine, Solved};
+use super::scalar::Scalar;
 
 /// What the second part `g` of a right-hand side means to a starter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +27,49 @@ pub trait Field<T> {
     ///
     /// All slices have [`dimension`](Field::dimension) entries, except that `g` is empty for [`Parts::One`].
     fn evaluate(&mut self, t: T, x: &[T], f: &mut [T], g: &mut [T]);
+
+    /// Solves `x = known + first f(t, x) + second g(t, x)` for the next state `x` at its time `t`, as implicit rows need it;
+    /// see [`Affine`] for what `known`, `first` and `second` are. On entry `x` holds a first guess.
+    ///
+    /// Unless overridden it returns [`Solved::NotOffered`], and the stepper iterates the equation itself
+    /// ([`FixedPoint`](super::FixedPoint)), which converges as long as `first` and `second` times the Lipschitz constants of
+    /// `f` and `g` stay below one: not for stiff problems. A field that can solve exactly, or by an iteration of its own, does
+    /// so here. An override should not allocate, returns [`Solved::NotConverged`] where it finds nothing, and does not panic.
+    ///
+    /// ```
+    /// use kinstep::formula::FormulaTable;
+    /// use kinstep::integrate::{Affine, Field, Method, Multistep, Solved, Starter};
+    ///
+    /// /// `x' = -rate x`, of which every implicit step can be solved for `x`.
+    /// struct Decay {
+    ///     rate: f64,
+    /// }
+    ///
+    /// impl Field<f64> for Decay {
+    ///     fn dimension(&self) -> usize {
+    ///         1
+    ///     }
+    ///     fn evaluate(&mut self, _t: f64, x: &[f64], f: &mut [f64], _g: &mut [f64]) {
+    ///         f[0] = -self.rate * x[0];
+    ///     }
+    ///     fn solve(&mut self, _t: f64, next: Affine<'_, f64>, x: &mut [f64]) -> Solved {
+    ///         x[0] = next.known[0] / (1.0 + next.first * self.rate);
+    ///         Solved::Converged
+    ///     }
+    /// }
+    ///
+    /// let mut field = Decay { rate: 1e6 };
+    /// let method = Method::of(FormulaTable::builtin().get("bdf1")?);
+    /// let mut solution = Multistep::of_method(method, &Starter::Rk4, &field, 0.0, 0.1, &[1.0])?;
+    /// for _ in 0..10 {
+    ///     solution.step(&mut field);
+    /// }
+    /// assert!(solution.state()[0].abs() < 1e-40);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn solve(&mut self, _t: T, _next: Affine<'_, T>, _x: &mut [T]) -> Solved {
+        Solved::NotOffered
+    }
 }
 
 /// A plain ODE `x' = f(t, x)` given by a closure `|t, x, derivative|`.

@@ -6,19 +6,40 @@
 //!
 //! with `x' = f(t, x) + g(t, x)`, newest sample first (index `j` is time `n + 1 - j`; not the ascending order of
 //! Hairer, Norsett and Wanner).
+//!
+//! | seam | what is behind it |
+//! |---|---|
+//! | [`Field`] | a right-hand side, and how to solve for the state of an implicit step |
+//! | [`Method`] | rows, and how they work together: explicit, implicit, implicit-explicit, predictor and corrector |
+//! | [`Coefficients`] | the weights of a row: fixed, or following the ratios of the last steps |
+//! | [`Starter`] | the states before the first step of the recursion |
+//! | [`StepController`] | whether a step is accepted, and how long the next one is |
+//!
+//! [`Multistep::new`] takes an explicit formula; [`Multistep::of_method`] takes any method.
 
+mod affine;
+mod coefficients;
+mod controller;
 mod equations;
+mod error;
 mod field;
-mod multistep;
-mod ring;
-mod runge_kutta;
+mod history;
+mod method;
 mod scalar;
+mod solve;
 mod starter;
-mod weights;
+mod status;
+mod stepper;
 
+pub use affine::{Affine, Solved};
+pub use coefficients::{Coefficients, RatioCoefficients, RatioRow, RowKind};
+pub use controller::{Attempt, Decision, FixedStep, StepController};
 pub use equations::{EquationError, EquationField, EquationText, Equations};
+pub use error::IntegrateError;
 pub use field::{Field, Ode, Parts};
-pub use multistep::{IntegrateError, Multistep, Status};
-pub use runge_kutta::Tableau;
+pub use method::{Method, Mode};
 pub use scalar::{Elementary, Scalar};
-pub use starter::Starter;
+pub use solve::FixedPoint;
+pub use starter::{Starter, StarterKind, Tableau};
+pub use status::Status;
+pub use stepper::Multistep;

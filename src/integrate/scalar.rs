@@ -6,7 +6,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 /// The numbers that states are made of: `f64`, `f32`, or an extended type of your own.
 ///
 /// Deliberately smaller than nalgebra's `RealField`, so that a double-double or an arbitrary-precision type needs
-/// four methods to take part in an order study.
+/// four methods and a number to take part in an order study.
 ///
 /// ```
 /// use kinstep::integrate::Scalar;
@@ -26,6 +26,9 @@ pub trait Scalar:
     + Neg<Output = Self>
     + 'static
 {
+    /// How far apart numbers around one are.
+    const RESOLUTION: f64;
+
     /// The nearest representable number to an exact rational.
     fn from_rational(value: &Rational) -> Self;
 
@@ -41,6 +44,8 @@ pub trait Scalar:
 }
 
 impl Scalar for f64 {
+    const RESOLUTION: f64 = f64::EPSILON;
+
     fn from_rational(value: &Rational) -> Self {
         value.to_f64().unwrap_or(f64::NAN)
     }
@@ -59,6 +64,8 @@ impl Scalar for f64 {
 }
 
 impl Scalar for f32 {
+    const RESOLUTION: f64 = f32::EPSILON as f64;
+
     fn from_rational(value: &Rational) -> Self {
         value.to_f64().unwrap_or(f64::NAN) as f32
     }
@@ -77,6 +84,8 @@ impl Scalar for f32 {
 }
 
 impl Scalar for DoubleDouble {
+    const RESOLUTION: f64 = 4.0 * Self::RESOLUTION;
+
     fn from_rational(value: &Rational) -> Self {
         Self::from_rational(value)
     }
@@ -96,9 +105,6 @@ impl Scalar for DoubleDouble {
 
 /// A scalar with the functions that right-hand sides are written with.
 pub trait Elementary: Scalar {
-    /// How far apart numbers around one are.
-    const RESOLUTION: f64;
-
     /// Sine and cosine of an angle \[rad\].
     fn sin_cos(self) -> (Self, Self);
 
@@ -121,8 +127,6 @@ pub trait Elementary: Scalar {
 }
 
 impl Elementary for f64 {
-    const RESOLUTION: f64 = f64::EPSILON;
-
     fn sin_cos(self) -> (Self, Self) {
         self.sin_cos()
     }
@@ -149,8 +153,6 @@ impl Elementary for f64 {
 }
 
 impl Elementary for DoubleDouble {
-    const RESOLUTION: f64 = 4.0 * Self::RESOLUTION;
-
     fn sin_cos(self) -> (Self, Self) {
         self.sin_cos()
     }

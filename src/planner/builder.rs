@@ -4,7 +4,6 @@ use super::grid::grid;
 use super::planner::Planner;
 use super::resolve::resolved;
 use super::run::{Description, Evaluated, Noise, SynchronousField};
-use super::start::Start;
 use super::system::{Arm, JointIndex, JointSystem, System};
 use crate::formula::Formula;
 use crate::integrate::{IntegrateError, Multistep, Starter};
@@ -22,7 +21,7 @@ pub struct PlannerBuilder {
     sigma: f64,
     duration: f64,
     feedback: Option<Feedback>,
-    start: Start,
+    start: Starter<f64>,
     arms: Vec<Arm>,
     systems: Vec<JointSystem>,
     allow_unstable: bool,
@@ -70,9 +69,12 @@ impl PlannerBuilder {
         self
     }
 
-    /// How the run begins.
+    /// How the run begins; by the cheapest start of sufficient order unless set.
+    ///
+    /// States that are given hold the joint positions of all arms one after the other. Arms that share joints stand at the
+    /// place of the first of them: its joints, then those of the next that are not there yet.
     #[must_use]
-    pub fn start(mut self, start: Start) -> Self {
+    pub fn start(mut self, start: Starter<f64>) -> Self {
         self.start = start;
         self
     }
@@ -122,7 +124,7 @@ impl PlannerBuilder {
         self.noise.check()?;
         let mut warnings = Vec::new();
         let (sigma, steps) = grid(self.sigma, self.duration, &self.arms, &mut warnings)?;
-        let starter = self.start.starter(formula);
+        let starter = named(self.start, formula);
         let noise = Some(self.noise).filter(|noise| !noise.is_silent());
         let warnings_of_arms: Vec<String> = self.arms.iter().filter_map(too_few_joints).collect();
 
@@ -179,6 +181,14 @@ fn check_arms(arms: &[Arm]) -> Result<(), PlannerError> {
         check_initial(arm)?;
     }
     Ok(())
+}
+
+/// The start that is meant, by its name.
+fn named(start: Starter<f64>, formula: &Formula) -> Starter<f64> {
+    match start {
+        Starter::Sufficient => Starter::sufficient_for(formula.order()),
+        named => named,
+    }
 }
 
 /// A start with given states, in the order of the field's components.

@@ -14,7 +14,6 @@ mod lanes;
 mod planner;
 mod resolve;
 mod run;
-mod start;
 mod system;
 
 pub use crate::law::LimitKind;
@@ -25,5 +24,4 @@ pub use feedback::Feedback;
 pub use grid::{MAX_SAMPLE_BYTES, sample_bytes};
 pub use planner::Planner;
 pub use run::{ArmPlan, Noise, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
-pub use start::Start;
 pub use system::{Arm, ArmState, DerivativeErrors, JointSystem, Violation, derivative_errors};

@@ -1,14 +1,15 @@
 //! Schemes with a name: a row, a law and a start put together, with no algorithm of their own.
 
 use crate::formula::{Formula, FormulaTable};
-use crate::planner::{Arm, Planner, PlannerBuilder, Start};
+use crate::integrate::Starter;
+use crate::planner::{Arm, Planner, PlannerBuilder};
 
 /// The DTSMP scheme, eq. (9) of T. Wang and D. Guo, IEEE Access 8 (2020): five steps, `O(sigma^4)` at fixed `h`,
 /// stable for `h` in (0, 2/3), started by four Euler steps as in the paper.
 ///
 /// Set the duration and build. A `start` set afterwards replaces the paper's.
 pub fn dtsmp(arms: impl IntoIterator<Item = Arm>, sigma: f64, h: f64) -> PlannerBuilder {
-    scheme("la6-wang-guo", arms, sigma, h).start(Start::Paper)
+    scheme("la6-wang-guo", arms, sigma, h).start(Starter::Paper)
 }
 
 /// The Euler scheme, eq. (13) of the same paper: `O(sigma^2)` at fixed `h`, stable for `h` in (0, 2).

@@ -1,19 +1,24 @@
 //! A control loop allocates nothing once it is set up.
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
+use kinstep::formula::FormulaTable;
+use kinstep::integrate::{
+    Attempt, Decision, Method, Mode, Multistep, Ode, RatioCoefficients, RatioRow, Starter, StepController,
+};
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
-use kinstep::planner::{Arm, Batch, Noise, Planner, PlannerBuilder, Start};
+use kinstep::planner::{Arm, Batch, Noise, Planner, PlannerBuilder};
 use kinstep::robot::embedded;
 use kinstep::scheme;
 use kinstep::task::{Circle, Motion, Planar, Plane, Sin2, TaskKind};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Two Pandas, a metre apart, each on a circle with its orientation held.
-fn planner(start: Start) -> Planner {
+fn planner(start: Starter<f64>) -> Planner {
     builder(start).build().unwrap()
 }
 
-fn builder(start: Start) -> PlannerBuilder {
+fn builder(start: Starter<f64>) -> PlannerBuilder {
     let arm = |name: &str, y: f64| {
         let chain = embedded::get("panda").unwrap().chain("panda_link0", "panda_link8").unwrap();
         let chain = chain.mounted(&IsometryMatrix3::new(Vector3::new(0.0, y, 0.0), Vector3::zeros()));
@@ -39,14 +44,14 @@ fn steps_without_allocating(mut planner: Planner) {
 
 #[test]
 fn a_thousand_steps_of_two_seven_joint_arms_allocate_nothing() {
-    for start in [Start::Paper, Start::Ramp, Start::Rk4, Start::Rk8] {
+    for start in [Starter::Paper, Starter::Ramp, Starter::Rk4, Starter::Rk8] {
         steps_without_allocating(planner(start));
     }
 }
 
 #[test]
 fn a_thousand_steps_of_three_plans_at_once_allocate_nothing() {
-    for start in [Start::Paper, Start::Rk8] {
+    for start in [Starter::Paper, Starter::Rk8] {
         let mut batch = Batch::new((0..3).map(|_| planner(start.clone())));
         let spent = allocation_counter::measure(|| {
             for _ in 0..1000 {
@@ -80,11 +85,83 @@ fn a_thousand_steps_of_arms_with_a_common_torso_allocate_nothing() {
 #[test]
 fn a_thousand_steps_with_noise_allocate_nothing() {
     let noise = Noise { seed: 1, position: 1e-5, linear_velocity: 1e-5, joints: 1e-6, ..Noise::default() };
-    steps_without_allocating(builder(Start::Rk4).noise(noise).build().unwrap());
+    steps_without_allocating(builder(Starter::Rk4).noise(noise).build().unwrap());
 }
 
 #[test]
 fn the_counter_counts() {
-    let spent = allocation_counter::measure(|| drop(std::hint::black_box(planner(Start::Rk4))));
+    let spent = allocation_counter::measure(|| drop(std::hint::black_box(planner(Starter::Rk4))));
     assert!(spent.count_total > 10);
+}
+
+/// The Adams-Bashforth formula of two steps for varying steps.
+#[derive(Debug)]
+struct VaryingAb2;
+
+impl RatioCoefficients<f64> for VaryingAb2 {
+    fn id(&self) -> &'static str {
+        "ab2-varying"
+    }
+
+    fn steps(&self) -> usize {
+        2
+    }
+
+    fn order(&self) -> usize {
+        2
+    }
+
+    fn write(&self, ratios: &[f64], row: RatioRow<'_, f64>) {
+        row.alpha[..2].copy_from_slice(&[1.0, -1.0]);
+        row.beta[1..].copy_from_slice(&[1.0 + ratios[0] / 2.0, -ratios[0] / 2.0]);
+    }
+
+    fn per_step_constant(&self, ratios: &[f64]) -> f64 {
+        1.0 / 6.0 + 1.0 / (4.0 * ratios[0])
+    }
+}
+
+/// Rejects every other attempt.
+struct Undecided(bool);
+
+impl StepController<f64> for Undecided {
+    fn judge(&mut self, attempt: &Attempt<'_, f64>) -> Decision<f64> {
+        self.0 = !self.0;
+        if self.0 {
+            return Decision::Reject { retry: 0.9 * attempt.step };
+        }
+        Decision::Accept { next: attempt.step / 0.9 }
+    }
+}
+
+#[test]
+fn steps_that_solve_correct_or_vary_allocate_nothing() {
+    let row = |id| FormulaTable::builtin().get(id).unwrap();
+    let methods = [
+        Method::of(row("bdf3")),
+        Method::pair(row("ab4"), row("am3"), Mode::Pec),
+        Method::pair(row("ab4"), row("am3"), Mode::Solved),
+        Method::of(Arc::new(VaryingAb2)),
+    ];
+    for method in methods {
+        let mut field = Ode::new(9, |t: f64, x: &[f64], f: &mut [f64]| {
+            for (f, x) in f.iter_mut().zip(x) {
+                *f = x * t.cos();
+            }
+        });
+        let mut stepper = Multistep::of_method(method, &Starter::Rk4, &field, 0.0, 1e-3, &[1.0; 9]).unwrap();
+        let spent = allocation_counter::measure(|| {
+            for _ in 0..500 {
+                stepper.step(&mut field);
+            }
+        });
+        assert_eq!((stepper.index(), spent.count_total), (500, 0));
+        let mut controller = Undecided(true);
+        let spent = allocation_counter::measure(|| {
+            for _ in 0..500 {
+                stepper.step_under(&mut field, &mut controller);
+            }
+        });
+        assert_eq!(spent.count_total, 0);
+    }
 }

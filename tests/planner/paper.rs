@@ -2,8 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+use kinstep::integrate::Starter;
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
-use kinstep::planner::{Arm, Plan, PlanStatus, PlannerBuilder, Start};
+use kinstep::planner::{Arm, Plan, PlanStatus, PlannerBuilder};
 use kinstep::robot::embedded;
 use kinstep::scheme;
 use kinstep::task::{Motion, Planar, Plane, Sin2, Sin2Sin2, TaskKind, TimeLaw, Tricuspid};
@@ -82,7 +83,7 @@ fn split_schemes_reach_the_figures_of_an_independent_simulation() {
         [(3, 0.02, 1.6e-6), (4, 0.02, 1.1e-7), (5, 0.02, 1.8e-8), (6, 0.02, 2.4e-9), (8, 0.02, 1.3e-10)];
     for (p, sigma, expected) in figures {
         let arm = arm("left", [0.9 * PI, -0.1 * PI, -0.1 * PI, -0.1 * PI], 0.2, Sin2Sin2);
-        let plan = run(scheme::split(p, [arm], sigma, 1.0).unwrap().start(Start::Ramp));
+        let plan = run(scheme::split(p, [arm], sigma, 1.0).unwrap().start(Starter::Ramp));
         let got = plan.arms[0].max_error_component;
         assert!((0.8..1.25).contains(&(got / expected)), "order {p}: {got:e} is not {expected:e}");
     }

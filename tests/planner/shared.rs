@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::formula::FormulaTable;
+use kinstep::integrate::Starter;
 use kinstep::law::{Criterion, Instant, Pseudoinverse};
 use kinstep::nalgebra::{DMatrix, DVector, Vector3, Vector6};
-use kinstep::planner::{Arm, Plan, Planner, PlannerError, Start};
+use kinstep::planner::{Arm, Plan, Planner, PlannerError};
 use kinstep::robot::{Chain, Robot, embedded};
 use kinstep::task::{Circle, Line, Motion, Planar, Plane, Quintic, TaskKind, TimeLaw};
 use std::f64::consts::TAU;
@@ -206,7 +207,7 @@ fn three_branches_of_one_trunk_are_one_system() {
 fn given_states_hold_the_union_of_the_joints() {
     let reference = planner(both(TaskKind::Pose), "la6-wang-guo", 0.02, 0.4).run();
     let state = |n: usize| [reference.arms[0].position(n), &reference.arms[1].position(n)[2..]].concat();
-    let given = Start::Given((1..5).map(state).collect());
+    let given = Starter::Given((1..5).map(state).collect());
     let formula = FormulaTable::builtin().get("la6-wang-guo").unwrap();
     let builder = Planner::builder().formula(formula).sigma(0.02).h(0.4).duration(DURATION).start(given);
     let plan = builder.arms(both(TaskKind::Pose)).build().unwrap().run();

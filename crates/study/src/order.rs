@@ -415,7 +415,7 @@ fn integrate(
     let mut stepper = Multistep::new(formula, starter, &field, 0.0, rung.sigma, &problem.initial())?;
     let mut states = stepper.state().to_vec();
     for _ in 0..rung.steps {
-        if stepper.step(&mut field) == Status::NonFinite {
+        if stepper.step(&mut field) != Status::Running {
             break;
         }
         states.extend_from_slice(stepper.state());

@@ -149,7 +149,7 @@ pub(super) fn trajectory<T: Elementary>(
     let mut stepper = Multistep::new(formula, starter, &field, T::zero(), sigma, &equations.initial::<T>())?;
     let mut states = stepper.state().to_vec();
     for _ in 0..steps {
-        if stepper.step(&mut field) == Status::NonFinite {
+        if stepper.step(&mut field) != Status::Running {
             break;
         }
         states.extend_from_slice(stepper.state());

@@ -10,7 +10,8 @@ use kinstep::integrate::{Elementary, Equations, IntegrateError, Starter};
 use kinstep::math::DoubleDouble;
 use kinstep::planner::Planner;
 use kinstep_files::scenario::{
-    ErrorKind, FormulaRows, KeyPath, MeasureKind, Precision, Real, Scenario, ScenarioError, Start, StudySpec,
+    ErrorKind, FormulaRows, KeyPath, MeasureKind, Precision, Real, Scenario, ScenarioError, StarterKind,
+    StudySpec,
 };
 use num_traits::ToPrimitive;
 use rayon::prelude::*;
@@ -193,7 +194,7 @@ impl ScenarioStudy {
             let mut scenario = self.at(sigma, JOINT_REFERENCE.0);
             scenario.law.h = Some(JOINT_REFERENCE.1.into());
             scenario.law.gain = None;
-            scenario.start = Some(Start::Rk8);
+            scenario.start = Some(StarterKind::Rk8);
             self.plan(&scenario)
         };
         let finest = self.ladder.sigmas().last().copied().unwrap_or(self.ladder.duration());
@@ -245,13 +246,11 @@ impl ScenarioStudy {
     fn start<T: Elementary>(&self, row: &Formula) -> Starter<T> {
         match self.scenario.start {
             None => Starter::sufficient_for(row.order()),
-            Some(Start::Paper) => Starter::Paper,
-            Some(Start::Rk4) => Starter::Rk4,
-            Some(Start::Rk8) => Starter::Rk8,
-            Some(Start::Ramp) => {
+            Some(StarterKind::Ramp) => {
                 let rows = (1..row.steps()).map_while(|known| self.table.ramp(row, known).cloned());
-                Starter::Ramp(rows.collect())
+                Starter::Rows(rows.collect())
             }
+            Some(kind) => kind.into(),
         }
     }
 

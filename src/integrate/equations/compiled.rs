@@ -1,7 +1,8 @@
 //! Expressions as lists of operations on a stack, and the field that they make.
 
 use super::parse::{Function, Node};
-use crate::integrate::{Elementary, Field};
+use crate::integrate::field::Field;
+use crate::integrate::scalar::Elementary;
 use crate::math::DoubleDouble;
 
 #[derive(Clone, Copy, Debug)]

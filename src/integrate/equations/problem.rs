@@ -2,7 +2,7 @@
 
 use super::compiled::{Compiled, EquationField};
 use super::parse::{Function, Meaning, Node, parse};
-use crate::integrate::Elementary;
+use crate::integrate::scalar::Elementary;
 use std::collections::HashSet;
 use thiserror::Error;
 
@@ -267,7 +267,7 @@ impl Names {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrate::Field;
+    use crate::integrate::field::Field;
     use crate::math::DoubleDouble;
     use proptest::prelude::*;
 

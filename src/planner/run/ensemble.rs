@@ -170,7 +170,7 @@ impl Ensemble {
                     return false;
                 }
             }
-            if self.stepper.advance(&mut self.field) == Status::Running {
+            if self.stepper.step(&mut self.field) == Status::Running {
                 return true;
             }
             self.stop_what_is_not_finite();

@@ -7,15 +7,16 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Unit, Vector3};
 
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
-use super::model::{ArmSpec, LawKind, Mount, Scenario, Start};
+use super::model::{ArmSpec, LawKind, Mount, Scenario};
 use super::noise_spec::NoiseSpec;
 use super::path_spec::{PathKind, PathSpec, TimeLawKind};
 use super::real::Real;
 use super::robots::RobotSource;
 use super::start_pose::StartPose;
 use kinstep::formula::{Duty, Formula, FormulaTable};
+use kinstep::integrate::Starter;
 use kinstep::law::Pseudoinverse;
-use kinstep::planner::{self, Arm, Planner, PlannerBuilder, PlannerError};
+use kinstep::planner::{Arm, Planner, PlannerBuilder, PlannerError};
 use kinstep::robot::{Chain, ChainError, ChainJoint, PositionsError, Robot, UrdfOptions};
 use kinstep::task::{self, Leaning, Motion, Planar, PlanarCurve, TimeLaw, Turning};
 
@@ -74,7 +75,7 @@ impl Scenario {
             .sigma(self.sigma.value())
             .duration(self.duration.value())
             .allow_unstable(self.allow_unstable)
-            .start(self.start.map_or(planner::Start::Sufficient, Start::planned))
+            .start(self.start.map_or(Starter::Sufficient, Starter::from))
             .noise(self.noise.as_ref().map(NoiseSpec::noise).unwrap_or_default());
         match (&self.law.h, &self.law.gain) {
             (Some(h), _) => builder.h(h.value()),
@@ -270,17 +271,6 @@ fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, S
         return Err(ScenarioError::at(ErrorKind::Robot, &at.key("tip"), problem));
     }
     Ok(chain)
-}
-
-impl Start {
-    fn planned(self) -> planner::Start {
-        match self {
-            Self::Paper => planner::Start::Paper,
-            Self::Ramp => planner::Start::Ramp,
-            Self::Rk4 => planner::Start::Rk4,
-            Self::Rk8 => planner::Start::Rk8,
-        }
-    }
 }
 
 impl TimeLawKind {

@@ -10,6 +10,7 @@ use super::path_spec::PathSpec;
 use super::real::{Real, exactly};
 use super::start_pose::StartPose;
 use super::study_spec::{ProblemSpec, StudySpec};
+use kinstep::integrate::StarterKind;
 use kinstep::task::TaskKind;
 
 /// A plan to be made: how time is discretised, what moves, along what, and how redundancy is resolved.
@@ -26,7 +27,7 @@ pub struct Scenario {
     pub formula: Option<String>,
     /// How the first states are made. Default: the cheapest Runge-Kutta start of sufficient order.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub start: Option<Start>,
+    pub start: Option<StarterKind>,
     /// Files with further formula rows, relative to the scenario's own file, or such rows themselves as text.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub formulas: Vec<String>,
@@ -48,21 +49,6 @@ pub struct Scenario {
     /// The arms, which move in synchrony.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub arm: Vec<ArmSpec>,
-}
-
-/// How the first states of a run are made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum Start {
-    /// Euler steps with the same h, as in the paper: leaves a residual of (sigma^2/2) phi''.
-    Paper,
-    /// Rows of the same family of rising order; begins like `paper`.
-    Ramp,
-    /// The classical Runge-Kutta method of order 4.
-    Rk4,
-    /// A Runge-Kutta method of order 8.
-    Rk8,
 }
 
 /// How redundancy is resolved, and how strongly the task error is fed back. At most one of `h` and `gain`;

@@ -59,7 +59,7 @@ fn reads_numbers_and_expressions() {
     assert_eq!(scenario.arm[0].q0[0].value(), 9.0 * std::f64::consts::PI / 10.0);
     assert_eq!(scenario.arm[0].q0[3].value(), 0.0);
     assert_eq!(scenario.arm[1].path.kind, PathKind::Line);
-    assert_eq!(scenario.start, Some(Start::Paper));
+    assert_eq!(scenario.start, Some(StarterKind::Paper));
     assert_eq!(scenario.arm[0].mount, Mount::default());
 }
 

@@ -6,7 +6,8 @@ use super::{
 };
 use crate::{Ladder, OrderReport, OrderStudy, Orders, Rung};
 use kinstep::formula::{Formula, FormulaTable};
-use kinstep::planner::{Arm, Feedback, Plan, Planner, PlannerError, Start};
+use kinstep::integrate::Starter;
+use kinstep::planner::{Arm, Feedback, Plan, Planner, PlannerError};
 use kinstep::robot::Chain;
 use kinstep::task::Motion;
 use kinstep_files::scenario::{self, Scenario, StudySpec};
@@ -44,7 +45,7 @@ pub struct OrderCase {
     /// The feedback, by step or by gain.
     pub feedback: Feedback,
     /// The start.
-    pub start: Start,
+    pub start: Starter<f64>,
     /// The sampling gaps.
     pub ladder: Ladder,
     /// The orders claimed.
@@ -75,7 +76,7 @@ impl OrderCase {
         &self,
         formula: &Formula,
         feedback: Feedback,
-        start: Start,
+        start: Starter<f64>,
         sigma: f64,
     ) -> Result<Planner, PlannerError> {
         let builder = Planner::builder().formula(formula).sigma(sigma).duration(DURATION).feedback(feedback);
@@ -97,7 +98,7 @@ impl OrderCase {
     pub fn study_against(&self, reference: &Formula, h: f64) -> Result<OrderReport, PlannerError> {
         self.order_study().of_planner_against(
             |sigma| self.planner(sigma),
-            |sigma| self.planner_with(reference, Feedback::Step(h), Start::Sufficient, sigma),
+            |sigma| self.planner_with(reference, Feedback::Step(h), Starter::Sufficient, sigma),
         )
     }
 
@@ -139,7 +140,7 @@ impl OrderCase {
     ) -> Option<Self> {
         let chain = arm.chain()?;
         let (smallest_singular_value, _) = arm.singular_values(&chain, &arm.q0());
-        let start = Start::Sufficient;
+        let start = Starter::Sufficient;
         let case = Self {
             formula,
             arm,
@@ -166,13 +167,7 @@ impl OrderCase {
             Feedback::Step(h) => (Some(h.into()), None),
             Feedback::Gain(gain) => (None, Some(gain.into())),
         };
-        let start = match self.start {
-            Start::Paper => Some(scenario::Start::Paper),
-            Start::Ramp => Some(scenario::Start::Ramp),
-            Start::Rk4 => Some(scenario::Start::Rk4),
-            Start::Rk8 => Some(scenario::Start::Rk8),
-            Start::Sufficient | Start::Given(_) => None,
-        };
+        let start = self.start.kind();
         let steps: Vec<usize> = self.ladder.rungs().map(|rung| rung.steps).collect();
         let arm = scenario::ArmSpec {
             name: "arm".to_owned(),

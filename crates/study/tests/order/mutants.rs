@@ -6,7 +6,7 @@
 
 use kinstep::formula::{Coefficients, Formula, FormulaTable};
 use kinstep::math::Rational;
-use kinstep::planner::Start;
+use kinstep::integrate::Starter;
 use kinstep_study::strategies::{
     FormulaCase, OrderCase, Shape, TimeLawCase, order_at_fixed_gain, order_at_fixed_step,
 };
@@ -97,7 +97,7 @@ fn with_an_euler_start(mut case: OrderCase) -> Option<OrderCase> {
     if case.formula.formula().order() < 3 || !accelerates {
         return None;
     }
-    case.start = Start::Paper;
+    case.start = Starter::Paper;
     Some(case)
 }
 

@@ -5,7 +5,7 @@
 use kinstep::formula::{Formula, FormulaTable, RootCondition};
 use kinstep::integrate::{Elementary, Field, Multistep, Parts, Starter};
 use kinstep::math::DoubleDouble;
-use kinstep::planner::{Arm, Planner, Start};
+use kinstep::planner::{Arm, Planner};
 use kinstep::robot::{Chain, embedded};
 use kinstep::task::{Circle, Motion, Planar, Plane, Sin2, TaskKind};
 use kinstep_study::{Convergence, Criteria, Ladder, Mark, OrderStudy, Orders, Rung};
@@ -124,7 +124,7 @@ fn on_a_circle(
     place: &Place,
     formula: &Formula,
     h: f64,
-    start: &Start,
+    start: &Starter<f64>,
     claimed: usize,
     ladder: &Ladder,
 ) -> Convergence {
@@ -140,13 +140,13 @@ fn on_a_circle(
     report.unwrap().task_transient.unwrap()
 }
 
-fn walk_on_arms(starts: &[Start], claimed: impl Fn(&Formula) -> usize + Sync) {
+fn walk_on_arms(starts: &[Starter<f64>], claimed: impl Fn(&Formula) -> usize + Sync) {
     let places = places();
     let (places, claimed) = (&places, &claimed);
     let walks = rows(Kind::StrictlyStable).into_par_iter().flat_map_iter(|formula| {
         places.iter().flat_map(move |place| starts.iter().map(move |start| (formula, place, start)))
     });
-    let walk = |(formula, place, start): (&Formula, &Place, &Start)| {
+    let walk = |(formula, place, start): (&Formula, &Place, &Starter<f64>)| {
         let name = format!("{} on the {} arm from {start:?}", formula.id(), place.name);
         let order = claimed(formula);
         shortfall(&name, order, |ladder| on_a_circle(place, formula, step(formula), start, order, ladder))
@@ -156,13 +156,13 @@ fn walk_on_arms(starts: &[Start], claimed: impl Fn(&Formula) -> usize + Sync) {
 
 #[test]
 fn strictly_stable_rows_show_one_order_more_on_both_arms_from_both_good_starts() {
-    walk_on_arms(&[Start::Sufficient, Start::Rk8], |formula| formula.order() + 1);
+    walk_on_arms(&[Starter::Sufficient, Starter::Rk8], |formula| formula.order() + 1);
 }
 
 #[test]
 fn strictly_stable_rows_show_what_an_euler_start_leaves() {
     let multistep = |formula: &Formula| if formula.steps() > 1 { 2 } else { formula.order() + 1 };
-    walk_on_arms(&[Start::Paper, Start::Ramp], multistep);
+    walk_on_arms(&[Starter::Paper, Starter::Ramp], multistep);
 }
 
 /// A number that is led along exp(sin t): x' = phi' - k (x - phi), the feedback in the second part.
@@ -238,7 +238,7 @@ fn weakly_stable_rows_run_on_arms_without_feedback_and_are_refused_with_it() {
     for formula in rows(Kind::WeaklyStable) {
         let order = formula.order();
         let missing = shortfall(formula.id(), order, |ladder| {
-            on_a_circle(place, formula, 0.0, &Start::Sufficient, order, ladder)
+            on_a_circle(place, formula, 0.0, &Starter<f64>::Sufficient, order, ladder)
         });
         assert_none(vec![missing]);
         assert!(formula.runnable_with_feedback().is_err() || !formula.feedback_range().is_empty());

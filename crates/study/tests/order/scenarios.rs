@@ -3,7 +3,8 @@
 
 use kinstep::formula::FormulaTable;
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
-use kinstep::planner::{Arm, Feedback, Planner, PlannerError, Start};
+use kinstep::integrate::Starter;
+use kinstep::planner::{Arm, Feedback, Planner, PlannerError};
 use kinstep::robot::embedded;
 use kinstep::task::{Circle, Motion, Planar, Plane, Sin2, TaskKind, Tricuspid};
 use kinstep_files::scenario::{ScenarioError, ScenarioText};
@@ -31,7 +32,7 @@ fn assert_task(report: &OrderReport, order: usize) {
 }
 
 /// The left arm of experiment A.1: four planar links of a metre on a tricuspid from its cusp.
-fn a1(sigma: f64, feedback: Feedback, start: Start) -> Result<Planner, PlannerError> {
+fn a1(sigma: f64, feedback: Feedback, start: Starter<f64>) -> Result<Planner, PlannerError> {
     let chain = embedded::get("planar4").unwrap().chain("base", "tip").unwrap();
     let chain = chain.mounted(&IsometryMatrix3::new(Vector3::new(-2.0, 0.0, 0.0), Vector3::zeros()));
     let q0 = vec![0.9 * PI, -0.1 * PI, -0.1 * PI, -0.1 * PI];
@@ -42,7 +43,7 @@ fn a1(sigma: f64, feedback: Feedback, start: Start) -> Result<Planner, PlannerEr
 }
 
 /// Seven joints, full pose, on a circle of 5 cm that accelerates at once.
-fn iiwa(id: &str, h: f64, start: Start, sigma: f64) -> Result<Planner, PlannerError> {
+fn iiwa(id: &str, h: f64, start: Starter<f64>, sigma: f64) -> Result<Planner, PlannerError> {
     let robot = embedded::get("iiwa14").unwrap();
     let tip = robot.leaves().next().unwrap().name.clone();
     let base = robot.roots().next().unwrap().name.clone();
@@ -58,7 +59,7 @@ fn planner(
     id: &str,
     arm: Arm,
     feedback: Feedback,
-    start: Start,
+    start: Starter<f64>,
     sigma: f64,
     duration: f64,
 ) -> Result<Planner, PlannerError> {
@@ -98,8 +99,8 @@ fn two_pandas_with_the_split_row_stay_below_a_tenth_of_a_nanometre() {
 fn the_paper_scheme_has_order_four_at_fixed_h_and_three_at_fixed_gain() {
     let ladder = || Ladder::halvings(10.0, 1000, 4).unwrap();
     let fixed_h = strict(ladder(), Orders::at_fixed_step(3));
-    assert_task(&fixed_h.of_planner(|sigma| a1(sigma, Feedback::Step(0.4), Start::Paper)).unwrap(), 4);
-    let gain = |sigma| a1(sigma, Feedback::Gain(20.0), Start::Paper);
+    assert_task(&fixed_h.of_planner(|sigma| a1(sigma, Feedback::Step(0.4), Starter::Paper)).unwrap(), 4);
+    let gain = |sigma| a1(sigma, Feedback::Gain(20.0), Starter::Paper);
     let fixed_gain = strict(ladder(), Orders::at_fixed_gain(3));
     let report = fixed_gain.of_planner(gain).unwrap();
     assert_task(&report, 3);
@@ -112,19 +113,19 @@ fn the_paper_scheme_has_order_four_at_fixed_h_and_three_at_fixed_gain() {
 fn the_start_decides_which_order_the_whole_run_shows() {
     let ladder = || Ladder::halvings(4.0, 100, 6).unwrap();
     let study = |orders| strict(ladder(), orders);
-    let euler = |sigma| iiwa("la6-wang-guo", 0.4, Start::Paper, sigma);
+    let euler = |sigma| iiwa("la6-wang-guo", 0.4, Starter::Paper, sigma);
     let report = study(Orders::at_fixed_step(3)).of_planner(euler).unwrap();
     assert!(report.task_transient.as_ref().unwrap().verdict.is_not_reached(), "{report}");
     assert!(report.task_steady.as_ref().unwrap().verdict.is_confirmed(), "{report}");
     assert_task(&study(Orders::at_fixed_step(1)).of_planner(euler).unwrap(), 2);
-    let rk4 = |sigma| iiwa("la6-wang-guo", 0.4, Start::Rk4, sigma);
+    let rk4 = |sigma| iiwa("la6-wang-guo", 0.4, Starter::Rk4, sigma);
     assert_task(&study(Orders::at_fixed_step(3)).of_planner(rk4).unwrap(), 4);
 }
 
 #[test]
 fn a_high_order_needs_a_start_of_its_own() {
     let error = |start| iiwa("split-ab6", 1.0, start, 0.01).unwrap().run().arms[0].max_error;
-    let (euler, runge_kutta) = (error(Start::Paper), error(Start::Sufficient));
+    let (euler, runge_kutta) = (error(Starter::Paper), error(Starter::Sufficient));
     assert!(runge_kutta < 1e-10 && euler > 1e-7, "{runge_kutta:e} and {euler:e}");
 }
 
@@ -132,18 +133,18 @@ fn a_high_order_needs_a_start_of_its_own() {
 fn joints_keep_what_an_euler_start_did_to_them() {
     // The share of sigma^3 is small in the joints: it takes fine gaps to see it come out.
     let ladder = Ladder::halvings(4.0, 100, 8).unwrap();
-    let reference = |sigma| iiwa("split-ab8", 1.0, Start::Rk8, sigma);
-    let joint = |start: Start, order| {
+    let reference = |sigma| iiwa("split-ab8", 1.0, Starter::Rk8, sigma);
+    let joint = |start: Starter<f64>, order| {
         let claims = Orders { joint: Some(order), ..Orders::at_fixed_step(3) };
         let study = OrderStudy::new(ladder.clone()).claiming(claims);
         let row = |sigma| iiwa("la6-wang-guo", 0.4, start.clone(), sigma);
         study.of_planner_against(row, reference).unwrap()
     };
-    let (good, euler) = (joint(Start::Rk4, 3), joint(Start::Paper, 3));
+    let (good, euler) = (joint(Starter::Rk4, 3), joint(Starter::Paper, 3));
     assert!(good.joint.as_ref().unwrap().verdict.is_confirmed(), "{good}");
     // Feedback repairs the task; the null space keeps the sigma^2 of the start.
     assert!(euler.joint.as_ref().unwrap().verdict.is_not_reached(), "{euler}");
-    assert!(joint(Start::Paper, 2).joint.unwrap().verdict.is_confirmed());
+    assert!(joint(Starter::Paper, 2).joint.unwrap().verdict.is_confirmed());
 }
 
 #[test]
@@ -168,7 +169,7 @@ fn a_study_of_runs_that_stop_gives_no_number() {
 #[test]
 fn a_planner_on_another_grid_is_not_judged() {
     let study = OrderStudy::new(Ladder::halvings(4.0, 100, 3).unwrap());
-    let report = study.of_planner(|sigma| a1(sigma, Feedback::Step(0.4), Start::Rk4)).unwrap();
+    let report = study.of_planner(|sigma| a1(sigma, Feedback::Step(0.4), Starter::Rk4)).unwrap();
     assert!(!report.task_transient.as_ref().unwrap().verdict.is_decided());
     assert!(report.notes[0].contains("give both one duration"), "{report}");
 }

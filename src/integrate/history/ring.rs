@@ -1,9 +1,9 @@
 /// Components are combined so many at a time: their sums stay in registers.
-pub(super) const BLOCK: usize = 8;
+pub(in crate::integrate) const BLOCK: usize = 8;
 
 /// The last few samples of a vector, newest first, in one allocation. Samples are filled up to whole blocks with zeros.
 #[derive(Clone, Debug)]
-pub(super) struct Ring<T> {
+pub(in crate::integrate) struct Ring<T> {
     samples: Vec<[T; BLOCK]>,
     dimension: usize,
     blocks: usize,
@@ -13,13 +13,17 @@ pub(super) struct Ring<T> {
 }
 
 impl<T: Copy> Ring<T> {
-    pub(super) fn new(capacity: usize, dimension: usize, zero: T) -> Self {
+    pub(in crate::integrate) fn new(capacity: usize, dimension: usize, zero: T) -> Self {
         let blocks = dimension.div_ceil(BLOCK);
         Self { samples: vec![[zero; BLOCK]; capacity * blocks], dimension, blocks, capacity, newest: 0 }
     }
 
-    /// A ring of components that come from several rings of one capacity; see [`Origin`](super::multistep::Origin).
-    pub(super) fn gathered(rings: &[&Self], origins: &[Option<(usize, usize)>], zero: T) -> Self {
+    /// A ring of components that come from several rings of one capacity: each from an entry of one of them, or zero.
+    pub(in crate::integrate) fn gathered(
+        rings: &[&Self],
+        origins: &[Option<(usize, usize)>],
+        zero: T,
+    ) -> Self {
         let capacity = rings.first().map_or(0, |ring| ring.capacity);
         let mut gathered = Self::new(capacity, origins.len(), zero);
         for age in (0..capacity).rev() {
@@ -32,13 +36,13 @@ impl<T: Copy> Ring<T> {
 
     /// The sample `age` steps before the newest; `age` is below the capacity.
     #[inline]
-    pub(super) fn get(&self, age: usize) -> &[T] {
+    pub(in crate::integrate) fn get(&self, age: usize) -> &[T] {
         &self.blocks(age).as_flattened()[..self.dimension]
     }
 
     /// The same in blocks, the last one filled up.
     #[inline]
-    pub(super) fn blocks(&self, age: usize) -> &[[T; BLOCK]] {
+    pub(in crate::integrate) fn blocks(&self, age: usize) -> &[[T; BLOCK]] {
         &self.samples[self.place(age)..][..self.blocks]
     }
 
@@ -52,17 +56,17 @@ impl<T: Copy> Ring<T> {
 
     /// The `B` blocks from the block `from` on.
     #[inline(always)]
-    pub(super) fn part<const B: usize>(&self, age: usize, from: usize) -> &[[T; BLOCK]; B] {
+    pub(in crate::integrate) fn part<const B: usize>(&self, age: usize, from: usize) -> &[[T; BLOCK]; B] {
         self.samples[self.place(age) + from..].first_chunk().expect("as many blocks as the state has")
     }
 
     /// The newest sample, for writing; there has to be room for one.
-    pub(super) fn newest_mut(&mut self) -> &mut [T] {
+    pub(in crate::integrate) fn newest_mut(&mut self) -> &mut [T] {
         &mut self.samples[self.newest..][..self.blocks].as_flattened_mut()[..self.dimension]
     }
 
     /// Makes room for a new sample (the oldest one goes) and lends it for writing.
-    pub(super) fn push(&mut self) -> &mut [T] {
+    pub(in crate::integrate) fn push(&mut self) -> &mut [T] {
         let dimension = self.dimension;
         let sample = self.push_blocks().as_flattened_mut();
         let kept = dimension.min(sample.len());
@@ -70,7 +74,7 @@ impl<T: Copy> Ring<T> {
     }
 
     /// The same in blocks; what is written beyond the dimension must be zero.
-    pub(super) fn push_blocks(&mut self) -> &mut [[T; BLOCK]] {
+    pub(in crate::integrate) fn push_blocks(&mut self) -> &mut [[T; BLOCK]] {
         let end = if self.newest == 0 { self.samples.len() } else { self.newest };
         // Nothing is kept where no capacity was asked for.
         self.newest = end.saturating_sub(self.blocks);

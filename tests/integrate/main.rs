@@ -1,0 +1,3 @@
+//! The stepper with methods, steps and fields of one's own.
+
+mod methods;
