@@ -134,7 +134,7 @@ fn a_law_sees_limits_the_velocity_before_and_the_state_that_it_leads_to_once_per
     ] {
         let seen = Arc::new(Mutex::new(Seen::default()));
         let arm = on_circle("arm", planar(0.0), &LEFT, 0.2).with_law(Capped::new(9.0, 90.0, &seen));
-        let plan = builder(formula, 0.01).start(start).arm(arm).build().unwrap().run();
+        let plan = builder(formula, 0.01).h(0.1).start(start).arm(arm).build().unwrap().run();
         assert!(plan.is_completed(), "{:?}", plan.reason);
         let seen = seen.lock().unwrap();
         let times: Vec<f64> = (0..plan.samples()).map(|n| plan.time(n)).collect();
@@ -181,7 +181,7 @@ fn what_can_not_be_met_within_the_limits_stops_the_run_and_names_the_rows() {
     let plan = builder("la6-wang-guo", 0.01).arm(arm).build().unwrap().run();
     assert_eq!(plan.status, PlanStatus::Limit);
     let reason = plan.reason.unwrap();
-    let names = ["`left`", "row 2 of task `position-xy`", "the velocity limit of joint `joint"];
+    let names = ["`left`", "row 2 of task `position-xy`", "the velocity limit of joint `j"];
     assert!(names.iter().all(|name| reason.contains(name)), "{reason}");
     let samples = plan.arms[0].errors.len();
     assert!(samples > 10 && samples < plan.steps, "what came before is kept: {samples}");

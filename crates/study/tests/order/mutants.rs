@@ -5,8 +5,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::formula::{Coefficients, Formula, FormulaTable};
-use kinstep::math::Rational;
 use kinstep::integrate::Starter;
+use kinstep::math::Rational;
 use kinstep_study::strategies::{
     FormulaCase, OrderCase, Shape, TimeLawCase, order_at_fixed_gain, order_at_fixed_step,
 };

@@ -238,7 +238,7 @@ fn weakly_stable_rows_run_on_arms_without_feedback_and_are_refused_with_it() {
     for formula in rows(Kind::WeaklyStable) {
         let order = formula.order();
         let missing = shortfall(formula.id(), order, |ladder| {
-            on_a_circle(place, formula, 0.0, &Starter<f64>::Sufficient, order, ladder)
+            on_a_circle(place, formula, 0.0, &Starter::Sufficient, order, ladder)
         });
         assert_none(vec![missing]);
         assert!(formula.runnable_with_feedback().is_err() || !formula.feedback_range().is_empty());

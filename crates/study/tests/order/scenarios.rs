@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::formula::FormulaTable;
-use kinstep::nalgebra::{IsometryMatrix3, Vector3};
 use kinstep::integrate::Starter;
+use kinstep::nalgebra::{IsometryMatrix3, Vector3};
 use kinstep::planner::{Arm, Feedback, Planner, PlannerError};
 use kinstep::robot::embedded;
 use kinstep::task::{Circle, Motion, Planar, Plane, Sin2, TaskKind, Tricuspid};
