@@ -187,7 +187,7 @@ impl Sources {
             known -= 1;
         }
         let (module, rest) = place.split_at(known);
-        let Some((name, below)) = rest.split_first() else {
+        let Some(name) = rest.first() else {
             return Target::Module(module.to_vec(), module[known - 1].clone());
         };
         let source = &self.modules[module].module;
@@ -197,25 +197,28 @@ impl Sources {
         if let Some(defined) = self.macros.get(&place[..=known]).filter(|_| known == 1) {
             return Target::Module(defined.clone(), name.clone());
         }
-        if depth > 16 {
-            return Target::Nothing;
+        let passed_on = (depth < 16).then(|| self.find_in_imports(module, rest, depth + 1)).flatten();
+        match passed_on {
+            Some(target) => target,
+            // What a macro defines is not seen, but stands in the file that is named.
+            None if !source.is_index() => Target::Module(module.to_vec(), name.clone()),
+            None => Target::Nothing,
         }
-        if let Some(import) = source.imports.iter().find(|import| import.name == *name) {
-            return match self.absolute(module, &import.path) {
-                Some(target) => self.find_within(&[target.as_slice(), below].concat(), depth + 1),
-                None => Target::Foreign,
-            };
+    }
+
+    /// Looks for the rest of a place in what a module brings in by `use`, by its name or with everything beside it.
+    fn find_in_imports(&self, module: &[String], rest: &[String], depth: usize) -> Option<Target> {
+        let (name, below) = rest.split_first()?;
+        let imports = &self.modules[module].module.imports;
+        if let Some(import) = imports.iter().find(|import| import.name == *name) {
+            let target = self.absolute(module, &import.path);
+            let found = |target: Place| self.find_within(&[target.as_slice(), below].concat(), depth);
+            return Some(target.map_or(Target::Foreign, found));
         }
-        for import in source.imports.iter().filter(|import| import.name == "*") {
-            if let Some(target) = self.absolute(module, &import.path) {
-                let found = self.find_within(&[target.as_slice(), rest].concat(), depth + 1);
-                if matches!(found, Target::Module(..)) {
-                    return found;
-                }
-            }
-        }
-        // What a macro defines is not seen, but stands in the file that is named.
-        if source.is_index() { Target::Nothing } else { Target::Module(module.to_vec(), name.clone()) }
+        let whole = imports.iter().filter(|import| import.name == "*");
+        let targets = whole.filter_map(|import| self.absolute(module, &import.path));
+        let mut found = targets.map(|target| self.find_within(&[target.as_slice(), rest].concat(), depth));
+        found.find(|found| matches!(found, Target::Module(..)))
     }
 
     /// Whether an index brings in a name from deeper down.
