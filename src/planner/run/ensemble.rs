@@ -199,8 +199,8 @@ impl Ensemble {
 
     /// Checks and observes a sample that was evaluated.
     fn check_and_observe(&mut self) {
-        let t = self.stepper.time();
         let evaluated = Evaluated::of(&self.stepper, &mut self.field);
+        let t = evaluated.time();
         if self.remembers {
             evaluated.scatter_to_arms();
         } else {

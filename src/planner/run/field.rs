@@ -26,6 +26,7 @@ pub(in crate::planner) struct SynchronousField {
     sample: Option<[f64; 2]>,
     /// What the history contributes to the next state, where a law asks for it.
     known: Vec<f64>,
+    needs_next_state: bool,
     level: Level,
 }
 
@@ -76,6 +77,7 @@ impl SynchronousField {
             is_clear: false,
             sample: None,
             known: Vec::new(),
+            needs_next_state: systems.iter().any(|system| system.law().needs_next_state()),
             level: level(),
             arms,
             systems,
@@ -156,9 +158,17 @@ impl SynchronousField {
     }
 
     /// Evaluates the present sample of a stepper, which has not been met before.
+    #[inline]
     pub(in crate::planner) fn evaluate_sample(&mut self, stepper: &mut Multistep<f64>) {
-        let needs_next_state = self.systems.iter().any(|system| system.law().needs_next_state());
-        let factors = if needs_next_state { stepper.write_next_state(&mut self.known) } else { [0.0; 2] };
+        let factors = if self.needs_next_state { self.ask_for_next_state(stepper) } else { [0.0; 2] };
+        self.sample = Some(factors);
+        stepper.evaluate(self);
+        self.sample = None;
+    }
+
+    /// Has every law that asks for it know how the next state depends on its answer.
+    fn ask_for_next_state(&mut self, stepper: &Multistep<f64>) -> [f64; 2] {
+        let factors = stepper.write_next_state(&mut self.known);
         for Group { from, members } in &self.groups {
             if let Members::Alone(system) = *members
                 && let Some(known) = self.systems[system].known_mut()
@@ -167,9 +177,7 @@ impl SynchronousField {
                 known.copy_from_slice(&self.known[*from..][..joints]);
             }
         }
-        self.sample = Some(factors);
-        stepper.evaluate(self);
-        self.sample = None;
+        factors
     }
 
     /// Finds the task errors of all systems, which are evaluated one by one, at other joint positions than those that were
@@ -274,6 +282,7 @@ impl<'a> Evaluated<'a> {
     }
 
     /// What was evaluated at the present sample.
+    #[inline]
     pub(in crate::planner) fn of(stepper: &'a Multistep<f64>, field: &'a mut SynchronousField) -> Self {
         let sample = Sample {
             positions: stepper.state(),
@@ -281,6 +290,12 @@ impl<'a> Evaluated<'a> {
             velocities: stepper.derivative(),
         };
         Self { field, sample, t: stepper.time() }
+    }
+
+    /// The time of the sample \[s\].
+    #[inline]
+    pub(in crate::planner) fn time(&self) -> f64 {
+        self.t
     }
 
     /// Observes all arms at a glance if none of them needs a closer look; otherwise gives itself back.
