@@ -200,7 +200,6 @@ impl Ensemble {
     /// Checks and observes a sample that was evaluated.
     fn check_and_observe(&mut self) {
         let evaluated = Evaluated::of(&self.stepper, &mut self.field);
-        let t = evaluated.time();
         if self.remembers {
             evaluated.scatter_to_arms();
         } else {
@@ -210,6 +209,7 @@ impl Ensemble {
             }
         }
         self.remembers = false;
+        let t = self.stepper.time();
         self.stop_what_is_infeasible(t);
         for run in self.runs.iter_mut().filter(|run| run.left_at.is_none() && run.stop.is_none()) {
             let arms = &mut self.field.arms[run.arms.clone()];

@@ -260,8 +260,7 @@ fn evaluate_alone(
 /// A field that has been evaluated at the present sample of a stepper: what can be asked of its arms only then.
 pub(in crate::planner) struct Evaluated<'a> {
     field: &'a mut SynchronousField,
-    sample: Sample<'a>,
-    t: f64,
+    stepper: &'a Multistep<f64>,
 }
 
 impl<'a> Evaluated<'a> {
@@ -282,20 +281,8 @@ impl<'a> Evaluated<'a> {
     }
 
     /// What was evaluated at the present sample.
-    #[inline]
     pub(in crate::planner) fn of(stepper: &'a Multistep<f64>, field: &'a mut SynchronousField) -> Self {
-        let sample = Sample {
-            positions: stepper.state(),
-            previous: stepper.previous(),
-            velocities: stepper.derivative(),
-        };
-        Self { field, sample, t: stepper.time() }
-    }
-
-    /// The time of the sample \[s\].
-    #[inline]
-    pub(in crate::planner) fn time(&self) -> f64 {
-        self.t
+        Self { field, stepper }
     }
 
     /// Observes all arms at a glance if none of them needs a closer look; otherwise gives itself back.
@@ -303,18 +290,23 @@ impl<'a> Evaluated<'a> {
         if !self.field.is_clear {
             return Err(self);
         }
-        let (t, sample) = (self.t, self.sample);
+        let (t, sample) = (self.stepper.time(), sample(self.stepper));
         self.field.each_group(|group, all, from| group.observe(all, t, &sample.from(from)));
         Ok(())
     }
 
     /// Gives every arm what is known of it, and its monitor where it was one sample ago.
     pub(in crate::planner) fn scatter_to_arms(self) {
-        let sample = self.sample;
+        let sample = sample(self.stepper);
         self.field.each_group(|group, all, from| {
             let sample = sample.from(from);
             group.scatter_to_arms(all, &sample);
             group.set_previous(all.arms, sample.previous);
         });
     }
+}
+
+/// What a stepper knows of the present sample.
+fn sample(stepper: &Multistep<f64>) -> Sample<'_> {
+    Sample { positions: stepper.state(), previous: stepper.previous(), velocities: stepper.derivative() }
 }
