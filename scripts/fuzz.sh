@@ -16,7 +16,9 @@ if [[ "${first##*/}" == rustc ]]; then
         -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table
         -Cllvm-args=-sanitizer-coverage-trace-compares)
     case " $* " in
-        *" --crate-name kinstep "* | *" --crate-name kinstep_files "* | *" --crate-name kinstep_study "*) exec "$@" "${instrumented[@]}" ;;
+        *" --crate-name kinstep "* | *" --crate-name kinstep_files "* | *" --crate-name kinstep_study "*)
+            exec "$@" "${instrumented[@]}"
+            ;;
         *) exec "$@" ;;
     esac
 fi
@@ -25,11 +27,12 @@ seconds=${1:-20}
 shift || true
 cd "$(dirname "$0")/.."
 root=$PWD
+built=${CARGO_TARGET_DIR:-$root/target}
 if [[ $# == 0 ]]; then set -- urdf table scenario rows; fi
 
 # The crates of the tests, plus libFuzzer.
 cp Cargo.lock fuzz/Cargo.lock
-(cd fuzz && RUSTC_WRAPPER="$root/scripts/fuzz.sh" CARGO_TARGET_DIR="$root/target" cargo build --quiet --bins)
+(cd fuzz && RUSTC_WRAPPER="$root/scripts/fuzz.sh" CARGO_TARGET_DIR="$built" cargo build --quiet --bins)
 
 # The files that a target begins with.
 seeds() {
@@ -42,7 +45,7 @@ seeds() {
     esac
 }
 
-found=$root/target/fuzz/found
+found=$built/fuzz/found
 mkdir -p "$found"
 corpus=$(mktemp -d)
 trap 'rm -rf "$corpus"' EXIT
@@ -52,7 +55,7 @@ for target in "$@"; do
         # Scenarios have an assignment in front of them.
         { [[ $target != scenario ]] || echo 'sigma=0.02'; cat "$file"; } >"$corpus/$target/${file//\//_}"
     done
-    "target/debug/$target" "$corpus/$target" -max_total_time="$seconds" -seed="${SEED:-1}" -max_len=16384 -timeout=10 \
+    "$built/debug/$target" "$corpus/$target" -max_total_time="$seconds" -seed="${SEED:-1}" -max_len=16384 -timeout=10 \
         -rss_limit_mb=2048 -artifact_prefix="$found/$target-" -verbosity=0 -print_final_stats=1 2>&1 |
         grep -E 'executed_units|ERROR|panicked|Test unit' || true
     if compgen -G "$found/$target-*" >/dev/null; then
