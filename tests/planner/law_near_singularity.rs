@@ -3,8 +3,8 @@
 
 use kinstep::law::{Instant, JointVelocity, Law, Pseudoinverse, Resolution, SystemShape};
 use kinstep::nalgebra::{DMatrix, Vector6};
-use kinstep_strategies::{ConfigurationCase, away_from_singularity, towards_singularity};
 use kinstep::task::TaskRows;
+use kinstep_strategies::{ConfigurationCase, away_from_singularity, towards_singularity};
 use proptest::prelude::*;
 
 const THRESHOLD: f64 = 1e-4;
