@@ -1,6 +1,8 @@
 //! What a tip shall do: paths, the time laws they are run through with, and the error against them.
 
+mod added_task;
 mod curve;
+mod distance;
 mod error;
 mod leaning;
 mod motion;
@@ -10,9 +12,11 @@ mod task;
 mod time_law;
 mod tracking;
 
+pub use added_task::{AddedTaskKind, MakeTask, TaskStart};
 pub use curve::{
     Astroid, CURVES, Circle, CurveKind, Fourier, Line, Lissajous, MakeCurve, PlanarCurve, Rose, Tricuspid,
 };
+pub use distance::Distance;
 pub use error::TaskKind;
 pub use leaning::Leaning;
 pub(crate) use motion::place_of_sample;
@@ -23,3 +27,6 @@ pub use time_law::{Linear, Quintic, Sin2, Sin2Sin2, TIME_LAWS, TimeLaw, TimeLawK
 pub use tracking::Tracking;
 
 pub(crate) use error::pose_error;
+
+/// Every built-in task beside those of the arms.
+pub const TASKS: &[AddedTaskKind] = &[distance::KIND];
