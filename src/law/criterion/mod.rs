@@ -9,9 +9,11 @@ pub use posture::Posture;
 
 use crate::kind::{Kind, Parameters};
 
-/// A null-space criterion that files can name. It is made of its parameters and of the positions [rad or m] at which the
-/// joints of its system start.
-pub type CriterionKind = Kind<fn(&Parameters, &[f64]) -> Box<dyn Criterion>>;
+/// A null-space criterion that files can name.
+pub type CriterionKind = Kind<MakeCriterion>;
+
+/// Makes a criterion of its parameters and of the positions [rad or m] at which the joints of its system start.
+pub type MakeCriterion = fn(&Parameters, &[f64]) -> Box<dyn Criterion>;
 
 /// Every built-in null-space criterion.
 pub const CRITERIA: &[CriterionKind] = &[posture::KIND];

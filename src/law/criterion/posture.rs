@@ -1,5 +1,5 @@
 use super::super::{Instant, SystemShape};
-use super::{Criterion, CriterionKind};
+use super::{Criterion, CriterionKind, MakeCriterion};
 use crate::kind::{Form, Kind, Parameter, Parameters};
 
 /// Pulls the joints towards a posture: `c = -rate (q - q_ref)`.
@@ -55,12 +55,14 @@ pub(super) const KIND: CriterionKind = Kind::new(
             "Positions q_ref, one per joint that is resolved together. Default: where the joints start.",
         ),
     ],
-    |given: &Parameters, start: &[f64]| -> Box<dyn Criterion> {
-        let reference = given.numbers("q").unwrap_or_else(|| start.to_vec());
-        Box::new(Posture::new(given.number("rate").unwrap_or(0.0), reference))
-    },
+    make as MakeCriterion,
 )
 .with_draw(|_, whole| Parameters::new().with("rate", f64::from(whole(1, 4))));
+
+fn make(given: &Parameters, start: &[f64]) -> Box<dyn Criterion> {
+    let reference = given.numbers("q").unwrap_or_else(|| start.to_vec());
+    Box::new(Posture::new(given.number("rate").unwrap_or(0.0), reference))
+}
 
 #[cfg(test)]
 mod tests {
