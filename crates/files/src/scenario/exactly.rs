@@ -19,17 +19,3 @@ pub(super) fn some_exactly<'de, D: Deserializer<'de>, const N: usize>(
 ) -> Result<Option<[Real; N]>, D::Error> {
     exactly(deserializer).map(Some)
 }
-
-/// Reads a list of vectors of three numbers each, for a key that may be left out.
-pub(super) fn some_triples<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Option<Vec<[Real; 3]>>, D::Error> {
-    let vectors = Vec::<Vec<Real>>::deserialize(deserializer)?;
-    let triple = |numbers: Vec<Real>| {
-        let got = numbers.len();
-        let refuse = |_| serde::de::Error::custom(format_args!("expected 3 numbers, got {got}"));
-        numbers.try_into().map_err(refuse)
-    };
-    vectors.into_iter().map(triple).collect::<Result<_, _>>().map(Some)
-}
-
