@@ -2,18 +2,12 @@
 
 #[expect(clippy::module_inception, reason = "the file is named after the trait that it holds")]
 mod criterion;
+mod criterion_kind;
 mod posture;
 
 pub use criterion::Criterion;
+pub use criterion_kind::{CriterionKind, MakeCriterion};
 pub use posture::Posture;
-
-use crate::kind::{Kind, Parameters};
-
-/// A null-space criterion that files can name.
-pub type CriterionKind = Kind<MakeCriterion>;
-
-/// Makes a criterion of its parameters and of the positions [rad or m] at which the joints of its system start.
-pub type MakeCriterion = fn(&Parameters, &[f64]) -> Box<dyn Criterion>;
 
 /// Every built-in null-space criterion.
 pub const CRITERIA: &[CriterionKind] = &[posture::KIND];

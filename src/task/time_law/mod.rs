@@ -6,17 +6,14 @@ mod sin2;
 mod sin2sin2;
 #[expect(clippy::module_inception, reason = "the file is named after the trait that it holds")]
 mod time_law;
+mod time_law_kind;
 
 pub use linear::Linear;
 pub use quintic::Quintic;
 pub use sin2::Sin2;
 pub use sin2sin2::Sin2Sin2;
 pub use time_law::TimeLaw;
-
-use crate::kind::Kind;
-
-/// A time law that files can name; it takes no parameters.
-pub type TimeLawKind = Kind<fn() -> Box<dyn TimeLaw>>;
+pub use time_law_kind::TimeLawKind;
 
 /// Every built-in time law; the first is the one that is taken unless another is named.
 pub const TIME_LAWS: &[TimeLawKind] = &[sin2::KIND, sin2sin2::KIND, linear::KIND, quintic::KIND];
