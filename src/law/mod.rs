@@ -23,7 +23,7 @@ pub use criterion::{CRITERIA, Criterion, CriterionKind, MakeCriterion, Posture};
 pub use infeasible::{Conflict, Infeasible, LimitKind};
 pub use instant::{Instant, JointVelocity, NextState};
 pub use law::{Law, LinearityKind, Resolution};
-pub use law_kind::{LawKind, MakeLaw};
+pub use law_kind::{Criteria, LawKind, MakeLaw};
 pub use pseudoinverse::Pseudoinverse;
 pub use shape::{SystemShape, TaskShape};
 

@@ -118,7 +118,7 @@ impl Law for Pseudoinverse {
     }
 
     fn criterion_rate(&self) -> Option<f64> {
-        let known = self.criteria.iter().filter_map(|criterion| criterion.rate());
+        let known = self.criteria.iter().filter_map(Criterion::rate);
         known.reduce(|sum, rate| sum + rate)
     }
 }

@@ -1,4 +1,4 @@
-use super::{AddedTaskKind, MakeTask, Quintic, Task, TaskInstant, TaskRows, TaskStart, TimeLaw};
+use super::{AddedTaskKind, MadeTask, MakeTask, Quintic, Task, TaskInstant, TaskRows, TaskStart, TimeLaw};
 use crate::kind::{Form, Kind, Parameter, Parameters};
 use nalgebra::Vector6;
 
@@ -83,7 +83,7 @@ pub(super) const KIND: AddedTaskKind = Kind::new(
 )
 .with_draw(|size, _| Parameters::new().with("to", size));
 
-fn from_start(given: &Parameters, start: &TaskStart<'_>) -> Result<Box<dyn Task>, String> {
+fn from_start(given: &Parameters, start: &TaskStart<'_>) -> MadeTask {
     let [one, other] = start.tips else { return Err("a distance is between two tips".to_owned()) };
     let apart = (other.translation.vector - one.translation.vector).norm();
     if apart == 0.0 {

@@ -12,7 +12,7 @@ mod task;
 mod time_law;
 mod tracking;
 
-pub use added_task::{AddedTaskKind, MakeTask, TaskStart};
+pub use added_task::{AddedTaskKind, MadeTask, MakeTask, TaskStart};
 pub use curve::{
     Astroid, CURVES, Circle, CurveKind, Fourier, Line, Lissajous, MakeCurve, PlanarCurve, Rose, Tricuspid,
 };
