@@ -7,6 +7,7 @@
 pub mod formula;
 pub mod integrate;
 pub mod inverse;
+pub mod kind;
 pub mod law;
 pub mod math;
 pub mod planner;

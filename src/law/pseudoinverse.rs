@@ -1,7 +1,8 @@
 use super::damping::{DampedInverse, default_threshold, is_regular};
 use super::fixed_rows::FixedRows;
 use super::stacked::StackedRows;
-use super::{Criterion, Infeasible, Instant, JointVelocity, Law, Resolution, SystemShape};
+use super::{Criterion, Infeasible, Instant, JointVelocity, Law, LawKind, MakeLaw, Resolution, SystemShape};
+use crate::kind::{Form, Kind, Parameter};
 use crate::math::RowRotations;
 use crate::task::TaskRows;
 
@@ -117,10 +118,28 @@ impl Law for Pseudoinverse {
     }
 
     fn criterion_rate(&self) -> Option<f64> {
-        let known = self.criteria.iter().filter_map(|criterion| criterion.rate());
+        let known = self.criteria.iter().filter_map(Criterion::rate);
         known.reduce(|sum, rate| sum + rate)
     }
 }
+
+pub(super) const KIND: LawKind = Kind::new(
+    "pseudoinverse",
+    "The joint velocity of least norm, by the pseudoinverse of the task Jacobian.",
+    &[Parameter::optional(
+        "threshold",
+        Form::Positive { noun: "threshold for singular values" },
+        "",
+        "Smallest singular value of the task Jacobian that is inverted undamped; below it the inverse is damped, and the report says so.",
+    )],
+    MakeLaw::WithCriteria(|given, criteria| {
+        Box::new(Pseudoinverse {
+            given_threshold: given.number("threshold"),
+            criteria,
+            ..Pseudoinverse::default()
+        })
+    }),
+);
 
 impl Workspace {
     fn new(shape: &SystemShape) -> Self {

@@ -24,4 +24,4 @@ pub use feedback::Feedback;
 pub use grid::{MAX_SAMPLE_BYTES, sample_bytes};
 pub use planner::Planner;
 pub use run::{ArmPlan, Noise, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
-pub use system::{Arm, ArmState, DerivativeErrors, JointSystem, Violation, derivative_errors};
+pub use system::{Arm, ArmState, DerivativeErrors, JointSystem, Violation, derivative_errors, joint_sets};

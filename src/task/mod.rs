@@ -1,8 +1,10 @@
 //! What a tip shall do: paths, the time laws they are run through with, and the error against them.
 
+mod added_task;
 mod curve;
+mod distance;
 mod error;
-mod fourier;
+mod leaning;
 mod motion;
 mod path;
 #[expect(clippy::module_inception, reason = "the file is named after the trait that it holds")]
@@ -10,14 +12,21 @@ mod task;
 mod time_law;
 mod tracking;
 
-pub use curve::{Astroid, Circle, Line, Lissajous, PlanarCurve, Rose, Tricuspid};
+pub use added_task::{AddedTaskKind, MadeTask, MakeTask, TaskStart};
+pub use curve::{
+    Astroid, CURVES, Circle, CurveKind, Fourier, Line, Lissajous, MakeCurve, PlanarCurve, Rose, Tricuspid,
+};
+pub use distance::Distance;
 pub use error::TaskKind;
-pub use fourier::{Fourier, Leaning};
+pub use leaning::Leaning;
 pub(crate) use motion::place_of_sample;
 pub use motion::{Motion, Reference};
 pub use path::{Path, PathPoint, Planar, Plane, Turning};
 pub use task::{Component, Task, TaskInstant, TaskRows, Tip};
-pub use time_law::{Linear, Quintic, Sin2, Sin2Sin2, TimeLaw};
+pub use time_law::{Linear, Quintic, Sin2, Sin2Sin2, TIME_LAWS, TimeLaw, TimeLawKind};
 pub use tracking::Tracking;
 
 pub(crate) use error::pose_error;
+
+/// Every built-in task beside those of the arms.
+pub const TASKS: &[AddedTaskKind] = &[distance::KIND];

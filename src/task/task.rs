@@ -60,6 +60,28 @@ pub trait Task: Send + Sync {
     }
 }
 
+impl Task for Box<dyn Task> {
+    fn name(&self) -> &str {
+        (**self).name()
+    }
+
+    fn rows(&self) -> usize {
+        (**self).rows()
+    }
+
+    fn evaluate(&self, at: &TaskInstant<'_>, out: &mut TaskRows) {
+        (**self).evaluate(at, out);
+    }
+
+    fn component(&self, row: usize) -> Component {
+        (**self).component(row)
+    }
+
+    fn tracking(&self) -> Option<(TaskKind, &Motion)> {
+        (**self).tracking()
+    }
+}
+
 /// What a row of a task measures, in axes of the task's own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Component {

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use super::PlanFormat;
-use kinstep::planner::{self, ArmPlan, Plan};
+use kinstep::planner::{self, ArmPlan, Plan, TaskPlan};
 
 /// The summary of a plan as JSON: how it ended, errors and limits by arm. The samples are not in it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,6 +30,8 @@ struct Document<'a> {
     samples: usize,
     noise: Option<Noise>,
     arms: Vec<Arm<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    tasks: Vec<Task<'a>>,
     shared: Vec<Shared<'a>>,
     warnings: &'a [String],
 }
@@ -43,6 +45,15 @@ struct Noise {
     linear_velocity: f64,
     angular_velocity: f64,
     joints: f64,
+}
+
+/// A task over the tips of several arms, beside their own.
+#[derive(Serialize)]
+struct Task<'a> {
+    name: &'a str,
+    arms: &'a [String],
+    rows: usize,
+    max_error: f64,
 }
 
 /// Arms that were resolved as one system because they move joints in common.
@@ -103,6 +114,7 @@ impl<'a> Document<'a> {
             samples: plan.samples(),
             noise: plan.noise.as_ref().map(Noise::of),
             arms: plan.arms.iter().map(Arm::of).collect(),
+            tasks: plan.tasks.iter().map(Task::of).collect(),
             shared: plan.shared.iter().map(|s| Shared { arms: &s.arms, joints: &s.joints }).collect(),
             warnings: &plan.warnings,
         }
@@ -114,6 +126,12 @@ impl Noise {
         let planner::Noise { seed, position, orientation, linear_velocity, angular_velocity, joints } =
             *noise;
         Self { seed, position, orientation, linear_velocity, angular_velocity, joints }
+    }
+}
+
+impl<'a> Task<'a> {
+    fn of(task: &'a TaskPlan) -> Self {
+        Self { name: &task.name, arms: &task.arms, rows: task.rows, max_error: task.max_error() }
     }
 }
 

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::{PlanFormat, Table, short, sparkline};
 use kinstep::math::number_text;
-use kinstep::planner::{ArmPlan, Noise, Plan};
+use kinstep::planner::{ArmPlan, Noise, Plan, TaskPlan};
 
 /// Width of the curves of the task errors [characters].
 const CURVE: usize = 64;
@@ -36,6 +36,9 @@ impl PlanFormat for PlanText {
             Some(reason) => writeln!(out, "stopped, {}: {reason}\n", plan.status.name())?,
         }
         write!(out, "{}", errors(plan))?;
+        for task in &plan.tasks {
+            writeln!(out, "\n{}", kept_together(task))?;
+        }
         if plan.noise.is_some() {
             writeln!(out, "\nroot mean square of the error in the second half: {}", mean_squares(plan))?;
         }
@@ -51,6 +54,11 @@ impl PlanFormat for PlanText {
         }
         plan.warnings.iter().try_for_each(|warning| writeln!(out, "\nwarning: {warning}"))
     }
+}
+
+/// Says how well a task over the tips of several arms was kept.
+pub(super) fn kept_together(task: &TaskPlan) -> String {
+    format!("task {} of {}: max error {:.2e}", task.name, task.arms.join(" and "), task.max_error())
 }
 
 /// Says what noise a loop suffered.

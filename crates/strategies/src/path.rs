@@ -1,8 +1,8 @@
 //! Random smooth paths, closed and open ones, and the laws by which time runs along them.
 
+use kinstep::kind::{Parameters, Value};
 use kinstep::task::{
-    Astroid, Circle, Fourier, Leaning, Line, Linear, Lissajous, Path, Planar, PlanarCurve, Plane, Quintic,
-    Rose, Sin2, Sin2Sin2, TimeLaw, Tricuspid,
+    CURVES, CurveKind, Leaning, Linear, MakeCurve, Path, Planar, Plane, Quintic, Sin2, Sin2Sin2, TimeLaw,
 };
 use nalgebra::{Unit, Vector3};
 use proptest::prelude::*;
@@ -14,16 +14,8 @@ use std::f64::consts::TAU;
 pub enum Shape {
     /// `sum_m (a_m (cos 2 pi m u - 1) + b_m sin 2 pi m u) / m^3` with the vectors `(a_m, b_m)` \[1/10\].
     Fourier(Vec<[[i8; 3]; 2]>),
-    /// A circle.
-    Circle,
-    /// A tricuspid from one of its cusps.
-    Tricuspid,
-    /// An astroid from one of its cusps.
-    Astroid,
-    /// A Lissajous figure of these frequencies.
-    Lissajous(u8, u8),
-    /// A rose of that many petals.
-    Rose(u8),
+    /// A planar curve of the registry, once around, and the numbers from which its parameters are drawn.
+    Curve(&'static str, Vec<i32>),
     /// A straight line in that direction, open.
     Line([i8; 3]),
     /// That much of a circle \[degrees\], open.
@@ -31,18 +23,45 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Phase of Lissajous figures \[rad\].
-    pub const PHASE: f64 = 0.5;
-
-    /// The coefficient \[m\] of mode `k + 1` of a Fourier path: a vector of tenths, times `scale / (k + 1)^3`.
-    pub fn coefficient(k: usize, mode: [i8; 3], scale: f64) -> Vector3<f64> {
-        Vector3::from(mode.map(|entry| f64::from(entry) / 10.0)) * scale / ((k + 1) as f64).powi(3)
+    /// The curve's name in the registry, and its parameters in the size `scale` \[m\].
+    pub fn parameters(&self, scale: f64) -> (&'static str, Parameters) {
+        let given = Parameters::new();
+        match self {
+            Self::Fourier(modes) => {
+                let vectors = |which: usize| -> Value {
+                    let vector = |(k, mode): (usize, &[[i8; 3]; 2])| {
+                        mode[which].map(|entry| f64::from(entry) / 10.0 * scale / ((k + 1) as f64).powi(3))
+                    };
+                    modes.iter().enumerate().map(vector).collect::<Vec<[f64; 3]>>().into()
+                };
+                ("fourier", given.with("cosines", vectors(0)).with("sines", vectors(1)))
+            }
+            Self::Curve(name, numbers) => {
+                let mut numbers = numbers.iter().cycle();
+                let mut whole =
+                    |low: i32, high: i32| low + numbers.next().map_or(0, |number| number % (high - low + 1));
+                let draw = curve(name).and_then(|kind| kind.draw);
+                (name, draw.map_or(given, |draw| draw(scale, &mut whole)))
+            }
+            Self::Line(direction) => {
+                ("line", given.with("displacement", direction.map(|entry| f64::from(entry) * scale)))
+            }
+            Self::Arc(_) => ("circle", given.with("radius", scale)),
+        }
     }
 
-    /// The displacement \[m\] from the beginning of a line to its end: its direction, times `scale`.
-    pub fn displacement(direction: [i8; 3], scale: f64) -> Vector3<f64> {
-        Vector3::from(direction.map(f64::from)) * scale
+    /// The angle \[rad\] that curves by angle sweep.
+    pub fn sweep(&self) -> f64 {
+        match self {
+            Self::Arc(degrees) => f64::from(*degrees).to_radians(),
+            _ => TAU,
+        }
     }
+}
+
+/// The built-in curve of that name.
+fn curve(name: &str) -> Option<&'static CurveKind> {
+    CURVES.iter().find(|kind| kind.name == name)
 }
 
 /// A path of a given extent, in space or in the plane of x and y.
@@ -90,32 +109,15 @@ impl PathCase {
     }
 
     fn scaled(&self, scale: f64) -> Box<dyn Path> {
-        let part = |curve: Box<dyn PlanarCurve>, sweep: f64| {
-            let rotation = f64::from(self.rotation).to_radians();
-            Box::new(Planar::new(curve, Plane::Xy, rotation, 0.0, sweep)) as Box<dyn Path>
-        };
-        let planar = |curve: Box<dyn PlanarCurve>| part(curve, TAU);
-        match &self.shape {
-            Shape::Fourier(modes) => {
-                let vectors = |which: usize| {
-                    modes
-                        .iter()
-                        .enumerate()
-                        .map(|(k, mode)| Shape::coefficient(k, mode[which], scale))
-                        .collect()
-                };
-                Box::new(Fourier { cosines: vectors(0), sines: vectors(1) })
+        let (name, given) = self.shape.parameters(scale);
+        match curve(name).map(|kind| kind.make) {
+            Some(MakeCurve::Planar(make)) => {
+                let rotation = f64::from(self.rotation).to_radians();
+                Box::new(Planar::new(make(&given), Plane::Xy, rotation, 0.0, self.shape.sweep()))
             }
-            Shape::Circle => planar(Box::new(Circle { radius: scale })),
-            Shape::Tricuspid => planar(Box::new(Tricuspid { radius: scale })),
-            Shape::Astroid => planar(Box::new(Astroid { radius: scale })),
-            Shape::Lissajous(x, y) => {
-                let frequencies = [f64::from(*x), f64::from(*y)];
-                planar(Box::new(Lissajous { amplitudes: [scale, scale], frequencies, phase: Shape::PHASE }))
-            }
-            Shape::Line(direction) => Box::new(Line { displacement: Shape::displacement(*direction, scale) }),
-            Shape::Arc(degrees) => part(Box::new(Circle { radius: scale }), f64::from(*degrees).to_radians()),
-            Shape::Rose(petals) => planar(Box::new(Rose { radius: scale, petals: f64::from(*petals) })),
+            Some(MakeCurve::Centered(make)) => make(&given),
+            Some(MakeCurve::FromTip(make)) => make(&given, &Vector3::zeros()),
+            None => unreachable!("shapes are named after curves of the registry"),
         }
     }
 
@@ -164,13 +166,13 @@ pub fn paths() -> impl Strategy<Value = PathCase> + Clone {
     let vector = || prop::array::uniform3(-10_i8..=10);
     let fourier =
         prop::collection::vec((vector(), vector()).prop_map(|(a, b)| [a, b]), 1..=3).prop_map(Shape::Fourier);
+    let is_drawn = |kind: &&CurveKind| kind.draw.is_some() && matches!(kind.make, MakeCurve::Planar(_));
+    let planar: Vec<&str> = CURVES.iter().filter(is_drawn).map(|kind| kind.name).collect();
+    let numbers = prop::collection::vec(0..12_i32, 4);
+    let curve = (select(planar.clone()), numbers).prop_map(|(name, numbers)| Shape::Curve(name, numbers));
     let shape = prop_oneof![
         2 => fourier,
-        1 => Just(Shape::Circle),
-        1 => Just(Shape::Tricuspid),
-        1 => Just(Shape::Astroid),
-        1 => (1_u8..=2, 1_u8..=3).prop_map(|(x, y)| Shape::Lissajous(x, y)),
-        1 => (2_u8..=3).prop_map(Shape::Rose),
+        planar.len() as u32 => curve,
     ];
     of_shape(shape)
 }

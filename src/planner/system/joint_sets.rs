@@ -12,7 +12,9 @@ fn share_a_joint(one: &Arm, other: &Arm) -> bool {
 
 /// The sets of arms that are resolved together, because they move joints in common or are tied, directly or through each
 /// other: indices in order, of two arms or more.
-pub(in crate::planner) fn joint_sets(arms: &[Arm], ties: &[Vec<usize>]) -> Vec<Vec<usize>> {
+///
+/// A tie is a set of arms, by their indices, that a task or a law is about. Returns nothing for arms that stand alone.
+pub fn joint_sets(arms: &[Arm], ties: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut sets: Vec<Vec<usize>> = Vec::new();
     let is_tied = |i: usize, j: usize| ties.iter().any(|tie| tie.contains(&i) && tie.contains(&j));
     for (i, arm) in arms.iter().enumerate() {

@@ -16,6 +16,7 @@ mod resolved;
 pub use arm::Arm;
 pub use arm_state::ArmState;
 pub use derivative_errors::{DerivativeErrors, derivative_errors};
+pub use joint_sets::joint_sets;
 pub use joint_system::JointSystem;
 pub use monitor::Violation;
 
@@ -23,7 +24,7 @@ pub(super) use arm_runtime::ArmRuntime;
 pub(super) use bounds::{Bounds, Deviation};
 pub(super) use disturbance::Disturbance;
 pub(super) use joint_index::JointIndex;
-pub(super) use joint_sets::{check_common_starts, joint_sets};
+pub(super) use joint_sets::check_common_starts;
 pub(super) use joint_system::AddedTask;
 pub(super) use limits::{JointLimits, excess};
 pub(super) use monitor::Monitor;

@@ -201,6 +201,14 @@ fn schemas_are_json_and_know_the_keys() {
     assert!(!required.contains(&"formula".into()), "without one, the best general row is taken");
     assert!(scenario["properties"]["formula"].is_object());
     assert!(scenario["properties"]["sigma"]["description"].as_str().unwrap().contains("in s"));
+    let text = scenario.to_string();
+    for name in ["tricuspid", "sin2sin2", "pseudoinverse", "posture", "distance"] {
+        assert!(text.contains(&format!("\"const\":\"{name}\"")), "{name}");
+    }
+    for key in ["radius", "petals", "cosines", "plane", "time_law"] {
+        assert!(scenario["$defs"]["PathSpec"]["properties"][key].is_object(), "{key}");
+    }
+    assert_eq!(scenario["$defs"]["PathSpec"]["additionalProperties"], false);
     let formula = kinstep(&["schema", "formula", "--json"]).expect(0).json();
     assert!(formula["$defs"]["Row"]["properties"]["error_constant"].is_object());
 }

@@ -374,3 +374,26 @@ fn a_scenario_finds_its_robot_beside_itself_from_any_folder() {
     let file = desk.path("s.toml");
     kinstep(&["plan", file.to_str().unwrap()]).expect(0);
 }
+
+#[test]
+fn a_task_over_two_tips_is_told_of_wherever_a_plan_is() {
+    let right = SMALL[SMALL.find("[[arm]]").unwrap()..]
+        .replace("\"left\"", "\"right\"")
+        .replace("path =", "mount = { xyz = [0.5, 0.3, 0] }\npath =");
+    let task = "[[task]]\nkind = \"distance\"\narms = [\"left\", \"right\"]\n";
+    let desk = Desk::new(&[("s.toml", &format!("{SMALL}{right}{task}")), ("alone.toml", SMALL)]);
+    let plan = desk.run(&["plan", "s.toml", "--out", "one", "--json"]).expect(0).json();
+    let told = &plan["tasks"][0];
+    assert_eq!((&told["name"], &told["rows"]), (&"distance".into(), &1.into()));
+    assert_eq!(told["arms"], serde_json::json!(["left", "right"]));
+    assert!(number(&told["max_error"]) < 1e-3, "{told}");
+    assert!(
+        desk.run(&["plan", "s.toml"]).expect(0).out.contains("task distance of left and right: max error")
+    );
+    let page = std::fs::read_to_string(desk.path("one/report.html")).unwrap();
+    assert!(page.contains("<p>task distance of left and right: max error"));
+    let written = std::fs::read_to_string(desk.path("one/scenario.toml")).unwrap();
+    assert!(written.contains("[[task]]") && desk.run(&["plan", "one/scenario.toml"]).code == 0);
+    let alone = desk.run(&["plan", "alone.toml", "--json"]).expect(0).json();
+    assert!(alone.get("tasks").is_none(), "{alone}");
+}

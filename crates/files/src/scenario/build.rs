@@ -7,18 +7,18 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Unit, Vector3};
 
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
-use super::model::{ArmSpec, LawKind, Mount, Scenario};
+use super::kinds::Kinds;
+use super::model::{ArmSpec, Mount, Scenario};
 use super::noise_spec::NoiseSpec;
-use super::path_spec::{PathKind, PathSpec, TimeLawKind};
-use super::real::Real;
+use super::path_spec::PathSpec;
 use super::robots::RobotSource;
 use super::start_pose::StartPose;
 use kinstep::formula::{Duty, Formula, FormulaTable};
 use kinstep::integrate::Starter;
-use kinstep::law::Pseudoinverse;
-use kinstep::planner::{Arm, Planner, PlannerBuilder, PlannerError};
+use kinstep::kind::Real;
+use kinstep::planner::{Arm, JointSystem, Planner, PlannerBuilder, PlannerError, joint_sets};
 use kinstep::robot::{Chain, ChainError, ChainJoint, PositionsError, Robot, UrdfOptions};
-use kinstep::task::{self, Leaning, Motion, Planar, PlanarCurve, TimeLaw, Turning};
+use kinstep::task::{self, Leaning, MakeCurve, Motion, Planar, Turning};
 
 impl Scenario {
     /// Returns a planner for the scenario with a row of `table`; robot files are looked for from `folder`, the place
@@ -28,21 +28,66 @@ impl Scenario {
     /// [`ScenarioError`] with the path of the key at fault: [`ScenarioText::placed`](super::ScenarioText::placed)
     /// gives it a place.
     pub fn planner(&self, table: &FormulaTable, folder: Option<&Path>) -> Result<Planner, ScenarioError> {
-        self.check()?;
+        self.planner_with(&Kinds::builtin(), table, folder)
+    }
+
+    /// As [`Scenario::planner`], with kinds of the program's own beside the built-in ones.
+    ///
+    /// # Errors
+    /// As [`Scenario::planner`].
+    pub fn planner_with(
+        &self,
+        kinds: &Kinds,
+        table: &FormulaTable,
+        folder: Option<&Path>,
+    ) -> Result<Planner, ScenarioError> {
+        self.read_and_checked(kinds)?.planner_of_checked(kinds, table, folder)
+    }
+
+    fn planner_of_checked(
+        &self,
+        kinds: &Kinds,
+        table: &FormulaTable,
+        folder: Option<&Path>,
+    ) -> Result<Planner, ScenarioError> {
         if self.problem.is_some() {
             let problem =
                 "this scenario is an initial value problem and moves no arm; `kinstep order` runs it";
             return Err(ScenarioError::at(ErrorKind::Scenario, &KeyPath::dotted("problem"), problem));
         }
         let formula = self.formula_of(table);
-        let arms = self.build_arms(folder);
+        let arms = self.build_arms(kinds, folder);
         let refusals = arms.iter().filter_map(|arm| arm.as_ref().err());
         if let Some(all) = ScenarioError::all(formula.as_ref().err().into_iter().chain(refusals)) {
             return Err(all);
         }
         let arms: Vec<Arm> = arms.into_iter().collect::<Result<_, _>>()?;
         let arms = self.on_machines(arms)?;
-        self.builder(formula?).arms(arms).build().map_err(|e| self.refused(&e))
+        let systems = self.systems(kinds, &arms)?;
+        let builder = self.builder(formula?).arms(arms);
+        systems.into_iter().fold(builder, PlannerBuilder::system).build().map_err(|e| self.refused(&e))
+    }
+
+    /// Returns the arms that tasks tie together, and those that share joints and have a law that sees all of these.
+    fn systems(&self, kinds: &Kinds, arms: &[Arm]) -> Result<Vec<JointSystem>, ScenarioError> {
+        let mut systems = Vec::new();
+        for (index, spec) in self.task.iter().enumerate() {
+            let at = KeyPath::dotted("task").index(index);
+            let task = spec.task(&at, kinds, arms, self.duration.value())?;
+            systems.push(JointSystem::of(&spec.arms).with_task(task));
+        }
+        if self.law.law(kinds, &[])?.fast_path().is_some() {
+            return Ok(systems);
+        }
+        let index = |name: &String| arms.iter().position(|arm| arm.name() == name);
+        let ties: Vec<Vec<usize>> =
+            self.task.iter().map(|task| task.arms.iter().filter_map(index).collect()).collect();
+        for set in joint_sets(arms, &ties) {
+            let arms: Vec<&Arm> = set.into_iter().map(|arm| &arms[arm]).collect();
+            let law = self.law.law(kinds, &common_start(&arms))?;
+            systems.push(JointSystem::of(arms.iter().map(|arm| arm.name())).with_law(law));
+        }
+        Ok(systems)
     }
 
     /// Returns the arms on their machines, with the paths that they should follow.
@@ -50,7 +95,16 @@ impl Scenario {
     /// # Errors
     /// As [`Scenario::planner`].
     pub fn arms(&self, folder: Option<&Path>) -> Result<Vec<Arm>, ScenarioError> {
-        self.on_machines(self.build_arms(folder).into_iter().collect::<Result<_, _>>()?)
+        self.arms_with(&Kinds::builtin(), folder)
+    }
+
+    /// As [`Scenario::arms`], with kinds of the program's own beside the built-in ones.
+    ///
+    /// # Errors
+    /// As [`Scenario::planner`].
+    pub fn arms_with(&self, kinds: &Kinds, folder: Option<&Path>) -> Result<Vec<Arm>, ScenarioError> {
+        let read = self.read_and_checked(kinds)?;
+        read.on_machines(read.build_arms(kinds, folder).into_iter().collect::<Result<_, _>>()?)
     }
 
     /// Returns the row that the scenario names, or the best general one, if it may be run.
@@ -86,7 +140,7 @@ impl Scenario {
 
     /// Returns the arms in their order. Those with a `start_pose` are built last: where they share joints with others,
     /// these are where the others have them.
-    fn build_arms(&self, folder: Option<&Path>) -> Vec<Result<Arm, ScenarioError>> {
+    fn build_arms(&self, kinds: &Kinds, folder: Option<&Path>) -> Vec<Result<Arm, ScenarioError>> {
         let mut built: Vec<(usize, Result<Arm, ScenarioError>)> = Vec::new();
         let mut order: Vec<usize> = (0..self.arm.len()).collect();
         order.sort_by_key(|&i| self.arm[i].start_pose.is_some());
@@ -94,7 +148,7 @@ impl Scenario {
             let spec = &self.arm[i];
             let on_machine = built.iter().filter(|(j, _)| self.arm[*j].is_same_machine(spec));
             let machine: Vec<&Arm> = on_machine.filter_map(|(_, arm)| arm.as_ref().ok()).collect();
-            let arm = self.build_arm(spec, folder, &machine);
+            let arm = self.build_arm(spec, kinds, folder, &machine);
             built.push((i, arm));
         }
         built.sort_by_key(|(i, _)| *i);
@@ -104,6 +158,7 @@ impl Scenario {
     fn build_arm(
         &self,
         spec: &ArmSpec,
+        kinds: &Kinds,
         folder: Option<&Path>,
         machine: &[&Arm],
     ) -> Result<Arm, ScenarioError> {
@@ -114,21 +169,23 @@ impl Scenario {
             chain.check_within_limits(&given).map_err(|problem| refused_positions(&at, &problem))?;
         }
         let held = positions_in_common(&chain, machine);
-        let solve = |start: &StartPose| start.solve(&at, spec, (&chain, &held), self.duration.value());
+        let solve =
+            |start: &StartPose| start.solve(&at, spec, (&chain, &held), (kinds, self.duration.value()));
         let found = spec.start_pose.as_ref().map(solve);
         let (q0, distance) = match found.transpose()? {
             Some(solution) => (solution.q.clone(), Some(solution.distance())),
             None => (given, None),
         };
         let start = chain.forward(&q0, &mut chain.scratch()).pose();
-        let motion = spec.path.motion(&start, self.duration.value());
-        let mut arm = Arm::new(spec.name.clone(), chain, q0, spec.task, motion);
-        if let Some(distance) = distance {
-            arm = arm.with_start_distance(distance);
-        }
-        Ok(match (self.law.kind, &self.law.threshold) {
-            (LawKind::Pseudoinverse, None) => arm,
-            (LawKind::Pseudoinverse, Some(t)) => arm.with_law(Pseudoinverse::new().with_threshold(t.value())),
+        let motion = spec.path.motion_with(kinds, &start, self.duration.value());
+        let unknown =
+            || ScenarioError::at(ErrorKind::Scenario, &at.key("path").key("kind"), "there is no such curve");
+        let law = self.law.law(kinds, &q0)?;
+        let arm =
+            Arm::new(spec.name.clone(), chain, q0, spec.task, motion.ok_or_else(unknown)?).with_law(law);
+        Ok(match distance {
+            Some(distance) => arm.with_start_distance(distance),
+            None => arm,
         })
     }
 
@@ -179,6 +236,16 @@ impl Scenario {
                 );
             }
             PlannerError::NoJoints { arm, .. } => (ErrorKind::Robot, of_arm(arm, "tip")),
+            PlannerError::LawDoesNotFit { .. } | PlannerError::CriterionTooFast { .. } => {
+                (ErrorKind::Scenario, KeyPath::dotted("law"))
+            }
+            PlannerError::TaskStart { task, .. } => {
+                let index = self.task.iter().position(|own| own.kind == *task);
+                (
+                    ErrorKind::Scenario,
+                    index.map_or_else(KeyPath::default, |index| KeyPath::dotted("task").index(index)),
+                )
+            }
             PlannerError::Integrate(_) => (ErrorKind::Formula, KeyPath::dotted("formula")),
             _ => (ErrorKind::Scenario, KeyPath::default()),
         };
@@ -196,6 +263,19 @@ fn positions_in_common(chain: &Chain, arms: &[&Arm]) -> Vec<(usize, f64)> {
         arms.iter().find_map(of).map(|position| (place, position))
     };
     chain.joints().iter().enumerate().filter_map(common).collect()
+}
+
+/// Where the joints of a system of arms start: those of the first arm, then those of the next that are not there yet.
+fn common_start(arms: &[&Arm]) -> Vec<f64> {
+    let mut q0 = Vec::new();
+    let mut there: HashSet<(&str, &str)> = HashSet::new();
+    for arm in arms {
+        for joint in arm.chain().joints() {
+            let is_new = arm.machine().is_none_or(|machine| there.insert((machine, joint.name.as_str())));
+            q0.extend(arm.start_of(&joint.name).filter(|_| is_new));
+        }
+    }
+    q0
 }
 
 fn refused_positions(at: &KeyPath, problem: &PositionsError) -> ScenarioError {
@@ -273,17 +353,6 @@ fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, S
     Ok(chain)
 }
 
-impl TimeLawKind {
-    fn planned(self) -> Box<dyn TimeLaw> {
-        match self {
-            Self::Sin2 => Box::new(task::Sin2),
-            Self::Sin2sin2 => Box::new(task::Sin2Sin2),
-            Self::Linear => Box::new(task::Linear),
-            Self::Quintic => Box::new(task::Quintic),
-        }
-    }
-}
-
 impl Mount {
     /// Returns the pose of the arm's base in the world.
     pub fn pose(&self) -> IsometryMatrix3<f64> {
@@ -313,80 +382,49 @@ fn value_or(number: Option<&Real>, default: f64) -> f64 {
 }
 
 impl PathSpec {
-    /// Returns the motion along the path of a tip that stands at `start`, in so many seconds.
-    pub fn motion(&self, start: &IsometryMatrix3<f64>, duration: f64) -> Motion {
-        let time_law = self.time_law.unwrap_or(TimeLawKind::Sin2).planned();
-        let path = self.path(start);
-        match &self.center {
-            Some(center) => {
-                let mut center = vector(center);
-                if self.center.as_ref().is_some_and(|given| given.len() == 2) {
-                    center.z = start.translation.z;
-                }
-                Motion::centered(path, time_law, duration, center, start.rotation)
-            }
-            None => Motion::from_pose(path, time_law, duration, start),
-        }
+    /// Returns the motion along the path of a tip that stands at `start`, in so many seconds; nothing where its curve or
+    /// its time law is not built in.
+    pub fn motion(&self, start: &IsometryMatrix3<f64>, duration: f64) -> Option<Motion> {
+        self.motion_with(&Kinds::builtin(), start, duration)
     }
 
-    fn path(&self, start: &IsometryMatrix3<f64>) -> Box<dyn task::Path> {
-        let path: Box<dyn task::Path> = match self.kind {
-            PathKind::Line => Box::new(task::Line { displacement: self.line_displacement(start) }),
-            PathKind::Fourier => Box::new(task::Fourier {
-                cosines: self.cosines.iter().flatten().map(|a| vector(a)).collect(),
-                sines: self.sines.iter().flatten().map(|b| vector(b)).collect(),
-            }),
-            _ => Box::new(Planar::new(
-                self.curve(),
+    /// As [`PathSpec::motion`], with kinds of the program's own beside the built-in ones.
+    pub fn motion_with(&self, kinds: &Kinds, start: &IsometryMatrix3<f64>, duration: f64) -> Option<Motion> {
+        let time_law = match &self.time_law {
+            Some(name) => kinds.time_laws.get(name)?,
+            None => kinds.time_laws.iter().next()?,
+        };
+        let (path, time_law) = (self.path(kinds, start)?, (time_law.make)());
+        Some(match &self.center {
+            Some(center) => {
+                let mut place = vector(center);
+                if center.len() == 2 {
+                    place.z = start.translation.z;
+                }
+                Motion::centered(path, time_law, duration, place, start.rotation)
+            }
+            None => Motion::from_pose(path, time_law, duration, start),
+        })
+    }
+
+    fn path(&self, kinds: &Kinds, start: &IsometryMatrix3<f64>) -> Option<Box<dyn task::Path>> {
+        let path: Box<dyn task::Path> = match kinds.curves.get(&self.kind)?.make {
+            MakeCurve::FromTip(make) => make(&self.parameters, &start.translation.vector),
+            MakeCurve::Centered(make) => make(&self.parameters),
+            MakeCurve::Planar(make) => Box::new(Planar::new(
+                make(&self.parameters),
                 self.plane.unwrap_or_default(),
                 value_or(self.rotation.as_ref(), 0.0),
                 value_or(self.from.as_ref(), 0.0),
                 value_or(self.sweep.as_ref(), std::f64::consts::TAU),
             )),
         };
-        match &self.turn {
-            None => path,
-            Some(turn) => {
-                let (axis, angle) = (Unit::new_normalize(vector(&turn.axis)), turn.angle.value());
-                if turn.back {
-                    Box::new(Leaning::new(path, axis, angle))
-                } else {
-                    Box::new(Turning::new(path, axis, angle))
-                }
-            }
-        }
-    }
-
-    fn line_displacement(&self, start: &IsometryMatrix3<f64>) -> Vector3<f64> {
-        match (&self.displacement, &self.to) {
-            (Some(displacement), _) => vector(displacement),
-            (None, Some(to)) => {
-                let mut displacement = vector(to) - start.translation.vector;
-                if to.len() == 2 {
-                    displacement.z = 0.0;
-                }
-                displacement
-            }
-            (None, None) => Vector3::zeros(),
-        }
-    }
-
-    /// The parameters that the kind needs have been checked to be there.
-    fn curve(&self) -> Box<dyn PlanarCurve> {
-        let radius = value_or(self.radius.as_ref(), 0.0);
-        let pair = |pair: &Option<[Real; 2]>| {
-            pair.as_ref().map_or([0.0; 2], |pair| pair.each_ref().map(Real::value))
-        };
-        match self.kind {
-            PathKind::Tricuspid => Box::new(task::Tricuspid { radius }),
-            PathKind::Astroid => Box::new(task::Astroid { radius }),
-            PathKind::Rose => Box::new(task::Rose { radius, petals: value_or(self.petals.as_ref(), 0.0) }),
-            PathKind::Lissajous => Box::new(task::Lissajous {
-                amplitudes: pair(&self.amplitudes),
-                frequencies: pair(&self.frequencies),
-                phase: value_or(self.phase.as_ref(), 0.0),
-            }),
-            PathKind::Circle | PathKind::Line | PathKind::Fourier => Box::new(task::Circle { radius }),
-        }
+        let Some(turn) = &self.turn else { return Some(path) };
+        let (axis, angle) = (Unit::new_normalize(vector(&turn.axis)), turn.angle.value());
+        Some(if turn.back {
+            Box::new(Leaning::new(path, axis, angle))
+        } else {
+            Box::new(Turning::new(path, axis, angle))
+        })
     }
 }

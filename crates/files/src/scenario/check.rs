@@ -2,25 +2,30 @@
 
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
+use super::kind_reader::{KindTable, check_length};
+use super::kinds::Kinds;
 use super::model::{ArmSpec, Scenario};
 use super::noise_spec::NoiseSpec;
-use super::path_spec::{PathKind, PathSpec, TurnSpec};
-use super::real::Real;
+use super::path_spec::{PathSpec, TurnSpec};
 use super::start_pose::{self, StartPose};
 use super::study_spec::StudySpec;
+use super::task_spec::TaskSpec;
+use kinstep::kind::Real;
+use kinstep::planner::{MAX_SAMPLE_BYTES, sample_bytes};
 use kinstep::task::TaskKind;
 
 /// Largest length [m], angle [rad] or other number of an arm that is believed.
 const MAX_SIZE: f64 = 1e6;
 
-/// Most memory that the trajectories of one plan may take [bytes].
-const MAX_BYTES: f64 = 4e9;
-
-fn refuse(path: &KeyPath, problem: impl std::fmt::Display) -> ScenarioError {
+pub(super) fn refuse(path: &KeyPath, problem: impl std::fmt::Display) -> ScenarioError {
     ScenarioError::at(ErrorKind::Scenario, path, problem)
 }
 
-fn require(holds: bool, path: &KeyPath, problem: impl FnOnce() -> String) -> Result<(), ScenarioError> {
+pub(super) fn require(
+    holds: bool,
+    path: &KeyPath,
+    problem: impl FnOnce() -> String,
+) -> Result<(), ScenarioError> {
     if holds { Ok(()) } else { Err(refuse(path, problem())) }
 }
 
@@ -31,8 +36,16 @@ impl Scenario {
     /// # Errors
     /// [`ScenarioError`] for the first thing that does not hold, with all others beside it.
     pub fn check(&self) -> Result<(), ScenarioError> {
+        self.check_with(&Kinds::builtin())
+    }
+
+    /// As [`Scenario::check`], with kinds of the program's own beside the built-in ones.
+    ///
+    /// # Errors
+    /// As [`Scenario::check`].
+    pub fn check_with(&self, kinds: &Kinds) -> Result<(), ScenarioError> {
         let arms = KeyPath::dotted("arm");
-        let mut found = vec![self.check_time(), self.check_law()];
+        let mut found = vec![self.check_time(), self.check_law().and_then(|()| self.law.check_kinds(kinds))];
         found.extend(self.noise.as_ref().map(NoiseSpec::check));
         found.extend(self.study.as_ref().map(StudySpec::check));
         if self.problem.is_some() {
@@ -52,8 +65,9 @@ impl Scenario {
             found.push(require(!taken, &name, || {
                 format!("two arms are called \"{}\"; each needs a name of its own", arm.name)
             }));
-            found.extend(check_arm(&arms.key(&arm.name), arm));
+            found.extend(check_arm(&arms.key(&arm.name), arm, kinds));
         }
+        found.extend(self.check_tasks(kinds));
         // How many steps there are is worth a word only when they are numbers of seconds at all.
         if found[0].is_ok() {
             found.push(self.check_size());
@@ -96,27 +110,31 @@ impl Scenario {
                 format!("{gain} 1/s is not a gain; it is positive")
             })?;
         }
-        if let Some(threshold) = &self.law.threshold {
-            believable(&law.key("threshold"), threshold)?;
-            require(threshold.value() > 0.0, &law.key("threshold"), || {
-                format!("{threshold} is not a threshold for singular values; it is positive")
-            })?;
-        }
         Ok(())
+    }
+
+    fn check_tasks(&self, kinds: &Kinds) -> Vec<Result<(), ScenarioError>> {
+        let check = |(index, task): (usize, &TaskSpec)| {
+            let at = KeyPath::dotted("task").index(index);
+            let table = KindTable { at: &at, kinds: &kinds.tasks, kind: &task.kind, keys: [&[], &[]] };
+            table.check(&task.parameters, (&["arms"], &[], &[]), false)?;
+            task.check_arms(&at, kinds, self)
+        };
+        self.task.iter().enumerate().map(check).collect()
     }
 
     fn check_size(&self) -> Result<(), ScenarioError> {
         let steps = self.duration.value() / self.sigma.value();
-        let columns: usize = self.arm.iter().map(|arm| 2 * arm.q0.len() + 1).sum();
-        let bytes = steps * (columns + 1) as f64 * 8.0;
-        require(bytes <= MAX_BYTES, &KeyPath::dotted("sigma"), || {
+        let joints = self.arm.iter().map(|arm| arm.q0.len()).sum();
+        let bytes = sample_bytes(steps, joints, self.arm.len());
+        require(bytes <= MAX_SAMPLE_BYTES, &KeyPath::dotted("sigma"), || {
             let (gigabytes, hours) = (bytes / 1e9, steps * self.arm.len() as f64 * 1e-6 / 3600.0);
             format!(
                 "{} s over {} s are {steps:.3e} steps: {gigabytes:.3e} GB of trajectory and about {hours:.1e} hours; \
                  take a longer gap or a shorter motion (at most {:.0} GB)",
                 self.sigma,
                 self.duration,
-                MAX_BYTES / 1e9
+                MAX_SAMPLE_BYTES / 1e9
             )
         })
     }
@@ -132,7 +150,7 @@ fn check_name(at: &KeyPath, name: &str) -> Result<(), ScenarioError> {
 }
 
 /// What is found in the parts of an arm, each by itself.
-fn check_arm(at: &KeyPath, arm: &ArmSpec) -> Vec<Result<(), ScenarioError>> {
+fn check_arm(at: &KeyPath, arm: &ArmSpec, kinds: &Kinds) -> Vec<Result<(), ScenarioError>> {
     let mut found = vec![require(!arm.q0.is_empty() || arm.start_pose.is_some(), &at.key("q0"), || {
         "give one position per joint of the chain, or a `start_pose` that they are to be solved for"
             .to_owned()
@@ -149,7 +167,7 @@ fn check_arm(at: &KeyPath, arm: &ArmSpec) -> Vec<Result<(), ScenarioError>> {
         found.extend(held.numbers().iter().map(|value| believable(&at, value)));
     }
     found.extend(arm.start_pose.as_ref().map(|start| check_start(&at.key("start_pose"), arm, start)));
-    found.push(check_path(&at.key("path"), &arm.path, arm.task));
+    found.push(check_path(&at.key("path"), &arm.path, arm.task, kinds));
     found
 }
 
@@ -168,54 +186,24 @@ fn check_start(at: &KeyPath, arm: &ArmSpec, start: &StartPose) -> Result<(), Sce
 }
 
 /// The one rule for the size of lengths and angles: beyond it nothing of the arithmetic would be left.
-fn believable(at: &KeyPath, number: &Real) -> Result<(), ScenarioError> {
+pub(super) fn believable(at: &KeyPath, number: &Real) -> Result<(), ScenarioError> {
     require(number.value().is_finite(), at, || format!("{number} is not a finite number"))?;
     require(number.value().abs() <= MAX_SIZE, at, || {
         format!("{number} is beyond any arm; lengths [m] and angles [rad] are at most {MAX_SIZE} in size")
     })
 }
 
-fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), ScenarioError> {
-    let (kind, known) = (path.kind.name(), path.kind.parameters());
-    for given in path.given() {
-        require(known.contains(&given), &at.key(given), || {
-            format!("a {kind} has no such parameter; it has {}", known.join(", "))
-        })?;
-    }
-    for needed in path.kind.required() {
-        require(path.given().contains(needed), &at.key(needed), || format!("a {kind} needs this"))?;
-    }
+fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind, kinds: &Kinds) -> Result<(), ScenarioError> {
+    path.check_kind(at, kinds, task)?;
     for (key, index, number) in path.numbers() {
         believable(&index.map_or_else(|| at.key(key), |index| at.key(key).index(index)), number)?;
     }
-    if let Some(radius) = &path.radius {
-        require(radius.value() > 0.0, &at.key("radius"), || {
-            format!("{radius} m is not a radius; it is positive")
-        })?;
-    }
-    if path.kind == PathKind::Line {
-        let ends = [&path.to, &path.displacement].iter().filter(|end| end.is_some()).count();
-        let problem =
-            || "a line ends at one of `to` (world) and `displacement` (from the tip); give one".to_owned();
-        require(ends == 1, at, problem)?;
-    }
-    check_points(at, path, task)?;
+    path.center.as_ref().map_or(Ok(()), |center| check_point(&at.key("center"), center, task))?;
     path.turn.as_ref().map_or(Ok(()), |turn| check_turn(&at.key("turn"), turn, task))
 }
 
-/// Points have x, y and z; in the plane the z may be left out.
-fn check_points(at: &KeyPath, path: &PathSpec, task: TaskKind) -> Result<(), ScenarioError> {
-    for (name, value) in [("to", &path.to), ("displacement", &path.displacement), ("center", &path.center)] {
-        value.as_ref().map_or(Ok(()), |value| check_point(&at.key(name), value, task))?;
-    }
-    Ok(())
-}
-
 fn check_point(at: &KeyPath, value: &[Real], task: TaskKind) -> Result<(), ScenarioError> {
-    let planar = task == TaskKind::PositionXy;
-    require(value.len() == 3 || (planar && value.len() == 2), at, || {
-        format!("expected {} numbers, got {}", if planar { "2 or 3" } else { "3" }, value.len())
-    })
+    check_length(at, value.len(), task == TaskKind::PositionXy)
 }
 
 fn check_turn(at: &KeyPath, turn: &TurnSpec, task: TaskKind) -> Result<(), ScenarioError> {

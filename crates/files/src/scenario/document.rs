@@ -9,6 +9,8 @@ use toml_edit::{Document, Item, TableLike};
 
 use super::error::{ErrorKind, Place, ScenarioError, not_one_of, suggestion};
 use super::key_path::{KeyPath, Step};
+use super::kind_reader::Misread;
+use super::kinds::Kinds;
 use super::model::Scenario;
 use super::overrides;
 use kinstep::robot::names::shown;
@@ -86,9 +88,35 @@ impl ScenarioText {
     /// [`ScenarioError`] for an unknown or missing key, a value of the wrong type or out of its range, with the
     /// nearest known key and the place.
     pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
-        let scenario: Scenario = toml::from_str(self.edited.raw()).map_err(|e| self.refusal(&e))?;
-        scenario.check().map_err(|e| self.placed(e))?;
+        self.scenario_with(&Kinds::builtin())
+    }
+
+    /// As [`ScenarioText::scenario`], with kinds of the program's own beside the built-in ones.
+    ///
+    /// # Errors
+    /// As [`ScenarioText::scenario`].
+    pub fn scenario_with(&self, kinds: &Kinds) -> Result<Scenario, ScenarioError> {
+        let mut scenario: Scenario =
+            toml::from_str(self.edited.raw()).map_err(|e| self.refusal(&e, kinds))?;
+        let misread = scenario.read_kinds(kinds).into_iter().map(|misread| self.of_misread(misread));
+        // What can not be read is told by itself, the first of it in the file.
+        let position = |error: &ScenarioError| error.place.as_ref().map(|place| (place.line, place.column));
+        if let Some(first) = misread.min_by_key(position) {
+            return Err(first);
+        }
+        scenario.check_with(kinds).map_err(|e| self.placed(e))?;
         Ok(scenario)
+    }
+
+    fn of_misread(&self, misread: Misread) -> ScenarioError {
+        let Misread { mut error, is_of_key } = misread;
+        if is_of_key && self.assignments.is_empty() {
+            let entries = entries(&self.original);
+            let entry = entries.iter().find(|entry| Some(&entry.path) == error.path.as_ref());
+            let key = entry.and_then(|entry| entry.key.as_ref());
+            error.place = key.map(|key| Box::new(self.place_of_byte(key.start)));
+        }
+        self.placed(error)
     }
 
     /// Returns the text with everything that was laid over it.
@@ -149,7 +177,7 @@ impl ScenarioText {
         Some(known.join(", ")).filter(|known| !known.is_empty())
     }
 
-    fn refusal(&self, error: &toml::de::Error) -> ScenarioError {
+    fn refusal(&self, error: &toml::de::Error, kinds: &Kinds) -> ScenarioError {
         let span = error.span().unwrap_or(0..0);
         let entries = entries(&self.edited);
         let (path, on_key) = path_at(&entries, &span);
@@ -168,6 +196,10 @@ impl ScenarioText {
             }
             Some((value, known)) if said.starts_with("unknown variant") => {
                 (path, format!("\"{value}\" is {}", not_one_of(value, known)))
+            }
+            _ if said.starts_with("invalid type") && kinds.names_at(&path).is_some() => {
+                let names = kinds.names_at(&path).unwrap_or_default();
+                (path, format!("expected one of {}", names.join(", ")))
             }
             _ if said.starts_with("wanted ") => {
                 let problem =

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::real::Real;
+use kinstep::kind::Real;
 
 /// Where a locked joint is held: a position in rad or m or, of a joint with more than one degree of freedom, the pose
 /// `[x, y, z, roll, pitch, yaw]` of its child after its origin (0 for none).

@@ -5,39 +5,50 @@
 
 mod build;
 mod check;
+mod criterion_spec;
 mod document;
 mod error;
+mod exactly;
 mod files;
 mod formulas;
 mod key_path;
+mod kind_reader;
+#[cfg(feature = "schema")]
+mod kind_schema;
+mod kinds;
+mod law_spec;
 mod lock_position;
 mod model;
 mod noise_spec;
 mod overrides;
 mod path_spec;
-mod real;
 mod robot_edits;
 mod robots;
 mod staging;
 mod start_pose;
 mod study_spec;
 pub mod suite;
+mod task_spec;
 #[cfg(test)]
 mod tests;
 
+pub use criterion_spec::CriterionSpec;
 pub use document::{ScenarioText, read_text};
 pub use error::{ErrorKind, Place, ScenarioError, suggestion};
 pub use formulas::{FormulaRows, row_refusals};
 pub use key_path::{KeyPath, Step};
+pub use kinds::Kinds;
 pub use kinstep::integrate::StarterKind;
+pub use kinstep::kind::Real;
 pub use kinstep::math::{ExpressionError, evaluate};
 pub use kinstep::task::{Plane, TaskKind};
+pub use law_spec::LawSpec;
 pub use lock_position::LockPosition;
-pub use model::{ArmSpec, LawKind, LawSpec, Mount, Scenario};
+pub use model::{ArmSpec, Mount, Scenario};
 pub use noise_spec::NoiseSpec;
-pub use path_spec::{PathKind, PathSpec, TimeLawKind, TurnSpec};
-pub use real::Real;
+pub use path_spec::{PathSpec, TurnSpec};
 pub use robot_edits::{calibrated, tool_name};
 pub use robots::RobotSource;
 pub use start_pose::{OnPath, StartPose, TipPose};
 pub use study_spec::{MeasureKind, Precision, ProblemSpec, StudySpec};
+pub use task_spec::TaskSpec;

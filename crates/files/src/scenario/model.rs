@@ -4,13 +4,20 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::error::ScenarioError;
+use super::exactly::exactly;
+use super::key_path::KeyPath;
+use super::kind_reader::{KindTable, Misread};
+use super::kinds::Kinds;
+use super::law_spec::LawSpec;
 use super::lock_position::LockPosition;
 use super::noise_spec::NoiseSpec;
 use super::path_spec::PathSpec;
-use super::real::{Real, exactly};
 use super::start_pose::StartPose;
 use super::study_spec::{ProblemSpec, StudySpec};
+use super::task_spec::TaskSpec;
 use kinstep::integrate::StarterKind;
+use kinstep::kind::Real;
 use kinstep::task::TaskKind;
 
 /// A plan to be made: how time is discretised, what moves, along what, and how redundancy is resolved.
@@ -49,37 +56,9 @@ pub struct Scenario {
     /// The arms, which move in synchrony.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub arm: Vec<ArmSpec>,
-}
-
-/// How redundancy is resolved, and how strongly the task error is fed back. At most one of `h` and `gain`;
-/// without either, h is the formula's optimum.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, expecting = "a table such as { h = 0.4 }")]
-pub struct LawSpec {
-    /// The law.
-    #[serde(default)]
-    pub kind: LawKind,
-    /// Feedback step h, dimensionless: held fixed, the task error falls like sigma^(p+1).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub h: Option<Real>,
-    /// Feedback gain k in 1/s: h = sigma k gamma(1).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gain: Option<Real>,
-    /// Smallest singular value of the task Jacobian that is inverted undamped; below it the inverse is damped,
-    /// and the report says so.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub threshold: Option<Real>,
-}
-
-/// The laws that a scenario can name.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum LawKind {
-    /// The joint velocity of least norm, by the pseudoinverse of the task Jacobian.
-    #[default]
-    Pseudoinverse,
+    /// Tasks over the tips of several arms, beside their own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub task: Vec<TaskSpec>,
 }
 
 /// One arm: a chain of a robot, where it stands, how it begins and what its tip follows.
@@ -161,6 +140,35 @@ impl Mount {
 }
 
 impl Scenario {
+    /// Reads the parameters of everything that names a kind by the registries of its kinds.
+    pub(super) fn read_kinds(&mut self, kinds: &Kinds) -> Vec<Misread> {
+        let mut misread = self.law.read(kinds);
+        for (index, arm) in self.arm.iter_mut().enumerate() {
+            let arms = KeyPath::dotted("arm");
+            let at = if arm.name.is_empty() { arms.index(index) } else { arms.key(&arm.name) };
+            misread.extend(arm.path.read(&at.key("path"), kinds));
+        }
+        for (index, task) in self.task.iter_mut().enumerate() {
+            let at = KeyPath::dotted("task").index(index);
+            let keys: [&[&str]; 2] = [&["kind", "arms"], &[]];
+            let table = KindTable { at: &at, kinds: &kinds.tasks, kind: &task.kind, keys };
+            misread.extend(table.read(&mut task.parameters).err());
+        }
+        misread
+    }
+
+    /// Returns the scenario with everything read and checked.
+    ///
+    /// # Errors
+    /// As [`Scenario::check_with`].
+    pub(super) fn read_and_checked(&self, kinds: &Kinds) -> Result<Self, ScenarioError> {
+        let mut scenario = self.clone();
+        let misread = scenario.read_kinds(kinds);
+        ScenarioError::all(misread.iter().map(|misread| &misread.error)).map_or(Ok(()), Err)?;
+        scenario.check_with(kinds)?;
+        Ok(scenario)
+    }
+
     /// Returns the scenario as TOML that reads back as the same scenario.
     #[expect(
         clippy::missing_panics_doc,

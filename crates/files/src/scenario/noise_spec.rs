@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
-use super::real::Real;
+use kinstep::kind::Real;
 use kinstep::planner::Noise;
 
 /// The largest seed: from here on not every whole number is a double.

@@ -7,7 +7,7 @@ use super::error::{ErrorKind, Place, ScenarioError};
 use super::files;
 use super::key_path::KeyPath;
 use super::model::ArmSpec;
-use super::real::Real;
+use kinstep::kind::Real;
 use kinstep::robot::{Calibration, CalibrationError, Robot};
 
 /// Returns the robot with the corrections that a calibration file lists.

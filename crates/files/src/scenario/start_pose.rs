@@ -8,10 +8,12 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::build::vector;
 use super::error::{ErrorKind, ScenarioError};
+use super::exactly::some_exactly;
 use super::key_path::KeyPath;
+use super::kinds::Kinds;
 use super::model::ArmSpec;
-use super::real::{Real, some_exactly};
 use kinstep::inverse::{Search, Solution, Target};
+use kinstep::kind::Real;
 use kinstep::robot::Chain;
 use kinstep::task::TaskKind;
 
@@ -85,12 +87,15 @@ impl StartPose {
     }
 
     /// What the arm's tip is asked to reach, in world axes.
-    fn target(&self, arm: &ArmSpec, duration: f64) -> Target {
+    fn target(&self, arm: &ArmSpec, kinds: &Kinds, duration: f64) -> Target {
         let (xyz, rpy) = self.parts();
         let place = match xyz {
             Some(xyz) => vector(xyz),
             // The path has been checked to have a centre, so that where the tip stands does not matter.
-            None => arm.path.motion(&IsometryMatrix3::identity(), duration).at(0.0).position,
+            None => arm
+                .path
+                .motion_with(kinds, &IsometryMatrix3::identity(), duration)
+                .map_or_else(Vector3::zeros, |motion| motion.at(0.0).position),
         };
         let is_planar = xyz.or(arm.path.center.as_deref()).is_some_and(|given| given.len() == 2);
         match rpy {
@@ -111,9 +116,9 @@ impl StartPose {
         at: &KeyPath,
         arm: &ArmSpec,
         (chain, held): (&Chain, &[(usize, f64)]),
-        duration: f64,
+        (kinds, duration): (&Kinds, f64),
     ) -> Result<Solution, ScenarioError> {
-        let target = self.target(arm, duration);
+        let target = self.target(arm, kinds, duration);
         let mut search = Search::new();
         if !arm.q0.is_empty() {
             search = search.near(&arm.q0.iter().map(Real::value).collect::<Vec<_>>());
@@ -155,7 +160,7 @@ pub(super) fn objection(arm: &ArmSpec, start: &StartPose) -> Option<String> {
         return Some("the task \"pose\" needs to know how the tip is turned: give rpy".to_owned());
     }
     if xyz.is_none() && arm.path.center.is_none() {
-        let kind = arm.path.kind.name();
+        let kind = &arm.path.kind;
         return Some(format!(
             "where the {kind} begins is not known, since it begins at the tip; give xyz (a curve with a `center` begins on its own)"
         ));

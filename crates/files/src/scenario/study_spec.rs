@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
 use super::model::Scenario;
-use super::real::Real;
 use kinstep::integrate::{EquationText, Equations};
+use kinstep::kind::Real;
 
 /// The most rungs of a ladder.
 const MOST_RUNGS: usize = 64;

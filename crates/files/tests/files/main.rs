@@ -1,5 +1,6 @@
 //! Trajectories written and read back.
 
+mod own_kinds;
 mod trajectories;
 mod trajectory_csv;
 mod trajectory_formats;

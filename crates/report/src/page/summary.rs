@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::PlanPage;
 use super::markup::{escaped, plain};
-use crate::plan_text::{disturbed_by, mean_squares};
+use crate::plan_text::{disturbed_by, kept_together, mean_squares};
 use crate::short;
 use kinstep::planner::{ArmPlan, Plan, PlanStatus};
 
@@ -31,6 +31,9 @@ pub(super) fn lead(page: &PlanPage<'_>) -> String {
         let (arms, joints) = (shared.arms.join(" and "), shared.joints.join(", "));
         // Writing to a String can not fail.
         let _ = write!(html, "<p>{} share {}: solved as one system.</p>", escaped(&arms), escaped(&joints));
+    }
+    for task in &plan.tasks {
+        let _ = write!(html, "<p>{}.</p>", escaped(&kept_together(task)));
     }
     if let Some(noise) = &plan.noise {
         let (noise, errors) = (disturbed_by(noise), mean_squares(plan));

@@ -197,6 +197,7 @@ impl OrderCase {
             study: Some(StudySpec { steps: Some(steps), order: self.orders.task, ..StudySpec::default() }),
             problem: None,
             arm: vec![arm],
+            task: Vec::new(),
         }
     }
 }

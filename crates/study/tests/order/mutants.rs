@@ -93,7 +93,7 @@ fn still_stable(case: OrderCase) -> Option<OrderCase> {
 /// not, and an error of order three can hide what the start leaves.
 fn with_an_euler_start(mut case: OrderCase) -> Option<OrderCase> {
     let accelerates = matches!(case.time_law, TimeLawCase::Sin2 | TimeLawCase::Linear)
-        && !matches!(case.path.shape, Shape::Tricuspid | Shape::Astroid);
+        && !matches!(case.path.shape, Shape::Curve("tricuspid" | "astroid", _));
     if case.formula.formula().order() < 3 || !accelerates {
         return None;
     }

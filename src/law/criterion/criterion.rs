@@ -1,4 +1,4 @@
-use super::{Instant, SystemShape};
+use super::super::{Instant, SystemShape};
 
 /// What redundant joints do beside the tasks: the `c` of `q' = J^+ (phi' - k e) + (I - J^+ J) c`.
 pub trait Criterion: Send {

@@ -1,14 +1,19 @@
-//! One number of a scenario, with the expression it was written as.
-
-use std::fmt;
-
+use crate::math::{ExpressionError, evaluate, number_text};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-use kinstep::math::evaluate;
+use std::fmt;
 
 /// A finite number, written as a number or as an expression in pi (`"9*pi/10"`).
 ///
-/// The expression is kept, so that a scenario that is written out reads as it was.
+/// The expression is kept, so that a file that is written out reads as it was.
+///
+/// ```
+/// use kinstep::kind::Real;
+///
+/// let turn: Real = "9*pi/10".parse()?;
+/// assert_eq!(turn.value(), 9.0 * std::f64::consts::PI / 10.0);
+/// assert_eq!(turn.to_string(), "9*pi/10");
+/// # Ok::<(), kinstep::math::ExpressionError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Real {
     value: f64,
@@ -28,11 +33,19 @@ impl From<f64> for Real {
     }
 }
 
+impl std::str::FromStr for Real {
+    type Err = ExpressionError;
+
+    fn from_str(text: &str) -> Result<Self, ExpressionError> {
+        Ok(Self { value: evaluate(text)?, expression: Some(text.to_owned()) })
+    }
+}
+
 impl fmt::Display for Real {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.expression {
             Some(expression) => f.write_str(expression),
-            None => f.write_str(&kinstep::math::number_text(self.value)),
+            None => f.write_str(&number_text(self.value)),
         }
     }
 }
@@ -74,38 +87,8 @@ impl serde::de::Visitor<'_> for RealVisitor {
     }
 
     fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Real, E> {
-        let value = evaluate(text).map_err(E::custom)?;
-        Ok(Real { value, expression: Some(text.to_owned()) })
+        text.parse().map_err(E::custom)
     }
-}
-
-/// Reads exactly `N` numbers; serde's own arrays take the first `N` and drop the rest in silence.
-pub(super) fn exactly<'de, D: Deserializer<'de>, const N: usize>(
-    deserializer: D,
-) -> Result<[Real; N], D::Error> {
-    let numbers = Vec::<Real>::deserialize(deserializer)?;
-    let got = numbers.len();
-    numbers.try_into().map_err(|_| serde::de::Error::custom(format_args!("expected {N} numbers, got {got}")))
-}
-
-/// As [`exactly`], for a key that may be left out.
-pub(super) fn some_exactly<'de, D: Deserializer<'de>, const N: usize>(
-    deserializer: D,
-) -> Result<Option<[Real; N]>, D::Error> {
-    exactly(deserializer).map(Some)
-}
-
-/// Reads a list of vectors of three numbers each, for a key that may be left out.
-pub(super) fn some_triples<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Option<Vec<[Real; 3]>>, D::Error> {
-    let vectors = Vec::<Vec<Real>>::deserialize(deserializer)?;
-    let triple = |numbers: Vec<Real>| {
-        let got = numbers.len();
-        let refuse = |_| serde::de::Error::custom(format_args!("expected 3 numbers, got {got}"));
-        numbers.try_into().map_err(refuse)
-    };
-    vectors.into_iter().map(triple).collect::<Result<_, _>>().map(Some)
 }
 
 #[cfg(feature = "schema")]
