@@ -13,15 +13,17 @@ use kinstep::task::{
 /// ```
 /// use kinstep::formula::FormulaTable;
 /// use kinstep::kind::{Form, Kind, Parameter};
-/// use kinstep::task::{Circle, MakeCurve};
+/// use kinstep::task::{Circle, CurveKind, MakeCurve};
 /// use kinstep_files::scenario::{Kinds, ScenarioText};
 ///
-/// let kinds = Kinds::builtin().with_curve(Kind::new(
+/// const HOOP: CurveKind = Kind::new(
 ///     "hoop",
 ///     "2 size (cos a, sin a).",
 ///     &[Parameter::required("size", Form::Positive { noun: "size" }, "m", "Half the radius.")],
 ///     MakeCurve::Planar(|given| Box::new(Circle { radius: 2.0 * given.number("size").unwrap_or(0.0) })),
-/// ));
+/// );
+///
+/// let kinds = Kinds::builtin().with_curve(HOOP);
 /// let text = ScenarioText::parse(
 ///     r#"
 ///     sigma = 0.01

@@ -2,7 +2,7 @@
 
 use kinstep::formula::FormulaTable;
 use kinstep::kind::{Form, Kind, Parameter};
-use kinstep::law::{Criterion, Infeasible, Instant, JointVelocity, Law, MakeCriterion, MakeLaw};
+use kinstep::law::{Criterion, CriterionKind, Infeasible, Instant, JointVelocity, Law, MakeLaw};
 use kinstep::law::{Pseudoinverse, Resolution, SystemShape};
 use kinstep::nalgebra::Vector6;
 use kinstep::planner::Plan;
@@ -82,20 +82,16 @@ impl Criterion for Drift {
     }
 }
 
-fn with_drift() -> Kinds {
-    let make: MakeCriterion = |given, _| Box::new(Drift(given.number("speed").unwrap_or(0.0)));
-    let speed = Parameter::required("speed", Form::Number, "rad/s", "Speed of every joint.");
-    Kinds::builtin().with_criterion(Kind::new(
-        "drift",
-        "Turns every joint.",
-        Box::leak(Box::new([speed])),
-        make,
-    ))
-}
+const DRIFT: CriterionKind = Kind::new(
+    "drift",
+    "Turns every joint.",
+    &[Parameter::required("speed", Form::Number, "rad/s", "Speed of every joint.")],
+    |given, _| Box::new(Drift(given.number("speed").unwrap_or(0.0))),
+);
 
 #[test]
 fn a_criterion_of_ones_own_changes_the_motion_and_not_the_order_of_the_error() {
-    let kinds = with_drift();
+    let kinds = Kinds::builtin().with_criterion(DRIFT);
     let own = ONE.replace("h = 0.4", "h = 0.4\n[[law.criterion]]\nkind = \"drift\"\nspeed = 0.2");
     let (plain, drifting) = (run(ONE, &kinds).unwrap(), run(&own, &kinds).unwrap());
     assert!(apart(&last(&plain, 0), &last(&drifting, 0)) > 0.01);
@@ -282,6 +278,13 @@ fn tips_keep_their_distance_or_the_one_that_is_asked_for() {
     }
 }
 
+const HOOP: Kind<MakeCurve> = Kind::new(
+    "hoop",
+    "2 size (cos a, sin a).",
+    &[Parameter::required("size", Form::Positive { noun: "size" }, "m", "Half the radius.")],
+    MakeCurve::Planar(|given| Box::new(Circle { radius: 2.0 * given.number("size").unwrap_or(0.0) })),
+);
+
 /// `t^2 (3 - 2 t)`.
 struct Cubic;
 
@@ -293,41 +296,6 @@ impl TimeLaw for Cubic {
 
 #[test]
 fn a_curve_and_a_time_law_of_ones_own_are_named_in_a_path() {
-    const SIZE: [Parameter; 1] =
-        [Parameter::required("size", Form::Positive { noun: "size" }, "m", "Half the radius.")];
-    let hoop = Kind::new(
-        "hoop",
-        "2 size (cos a, sin a).",
-        &SIZE,
-        MakeCurve::Planar(|given| Box::new(Circle { radius: 2.0 * given.number("size").unwrap_or(0.0) })),
-    );
-    let kinds =
-        Kinds::builtin()
-            .with_curve(hoop)
-            .with_time_law(Kind::new("cubic", "t^2 (3 - 2 t).", &[], || Box::new(Cubic)));
-    let own = ONE.replace("kind = \"circle\", radius = 0.1", "kind = \"hoop\", size = 0.05");
-    let (plain, hooped) = (run(ONE, &kinds).unwrap(), run(&own, &kinds).unwrap());
-    assert_eq!(last(&plain, 0), last(&hooped, 0));
-    let cubic = run(&own.replace("sin2sin2", "cubic"), &kinds).unwrap();
-    assert!(cubic.is_completed() && apart(&cubic.arms[0].positions[..], &plain.arms[0].positions[..]) > 1e-3);
-    let message = refusal(&own.replace("\"hoop\"", "\"hop\""), &kinds);
-    assert!(message.ends_with("fourier, hoop; did you mean hoop?"), "{message}");
-    let message = refusal(&own.replace("size = 0.05", "radius = 0.05"), &kinds);
-    assert!(
-        message.ends_with("it has plane, rotation, from, sweep, center, size, time_law, turn"),
-        "{message}"
-    );
-    let message = refusal(&own.replace("sin2sin2", "cubik"), &kinds);
-    assert_eq!(
-        message,
-        "arm.left.path.time_law: \"cubik\" is not one of sin2, sin2sin2, linear, quintic, cubic; did you mean cubic?"
-    );
-    let message = refusal(&own, &Kinds::builtin());
-    assert!(message.starts_with("arm.left.path.kind: \"hoop\" is not one of circle"), "{message}");
-}
-
-#[test]
-fn what_a_program_makes_is_read_like_a_file() {
     let kinds = Kinds::builtin();
     let mut scenario = read(ONE, &kinds).unwrap();
     let mut posture = CriterionSpec::new("posture");
