@@ -83,7 +83,7 @@ fn apart(one: &[f64], other: &[f64]) -> f64 {
 fn order(text: &str, kinds: &Kinds) -> f64 {
     let error = |sigma: &str| {
         let text = text.replace("sigma = 0.01", &format!("sigma = {sigma}"));
-        run(&text, kinds).unwrap().arms[0].max_error_steady
+        run(&text, kinds).expect("a sound scenario").arms[0].max_error_steady
     };
     (error("0.02") / error("0.01")).log2()
 }
@@ -218,7 +218,7 @@ struct Level {
 }
 
 impl Task for Level {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "level"
     }
 
@@ -275,7 +275,7 @@ fn tips_keep_their_distance_or_the_one_that_is_asked_for() {
     assert!(nearer.is_completed() && nearer.tasks[0].max_error() < 1e-5, "{}", nearer.tasks[0].max_error());
     assert!(apart(&last(&plan, 0), &last(&nearer, 0)) > 1e-3);
     let spec = TaskSpec::new("distance", ["left", "right"]);
-    let mut scenario = read(&format!("{PAIR}"), &kinds).unwrap();
+    let mut scenario = read(PAIR, &kinds).unwrap();
     scenario.task.push(spec);
     assert_eq!(read(&scenario.to_toml(), &kinds).unwrap(), read(&tied(""), &kinds).unwrap());
     for (more, said) in [
