@@ -377,11 +377,17 @@ fn a_scenario_finds_its_robot_beside_itself_from_any_folder() {
 
 #[test]
 fn a_task_over_two_tips_is_told_of_wherever_a_plan_is() {
-    let right = SMALL[SMALL.find("[[arm]]").unwrap()..]
-        .replace("\"left\"", "\"right\"")
-        .replace("path =", "mount = { xyz = [0.5, 0.3, 0] }\npath =");
+    let arm = |name: &str, height: f64| {
+        format!(
+            "[[arm]]\nname = \"{name}\"\nrobot = \"panda\"\nbase = \"panda_link0\"\ntip = \"panda_hand_tcp\"\n\
+             task = \"position-xy\"\nq0 = [0.0, \"-pi/4\", 0.0, \"-3*pi/4\", 0.0, \"pi/2\", \"pi/4\"]\nmount = {{ xyz = [{height}, 0, {height}] }}\n\
+             path = {{ kind = \"circle\", radius = 0.05 }}\n"
+        )
+    };
+    let (head, _) = SMALL.split_once("[[arm]]").unwrap();
     let task = "[[task]]\nkind = \"distance\"\narms = [\"left\", \"right\"]\n";
-    let desk = Desk::new(&[("s.toml", &format!("{SMALL}{right}{task}")), ("alone.toml", SMALL)]);
+    let pair = format!("{head}{}{}{task}", arm("left", 0.0), arm("right", 0.4));
+    let desk = Desk::new(&[("s.toml", &pair), ("alone.toml", SMALL)]);
     let plan = desk.run(&["plan", "s.toml", "--out", "one", "--json"]).expect(0).json();
     let told = &plan["tasks"][0];
     assert_eq!((&told["name"], &told["rows"]), (&"distance".into(), &1.into()));

@@ -28,16 +28,35 @@ q0 = [0.3, 0.4, 0.5, 0.6]
 path = { kind = "circle", radius = 0.1, time_law = "sin2sin2" }
 "#;
 
-const OTHER: &str = r#"
+/// Two arms of which one stands higher; how high their tips are is left to them.
+const PAIR: &str = r#"
+sigma = 0.01
+duration = 2.0
+formula = "la6-wang-guo"
+start = "rk8"
+
+[law]
+h = 0.4
+
+[[arm]]
+name = "left"
+robot = "panda"
+base = "panda_link0"
+tip = "panda_hand_tcp"
+task = "position-xy"
+q0 = [0.0, "-pi/4", 0.0, "-3*pi/4", 0.0, "pi/2", "pi/4"]
+mount = { xyz = [0, 0, 0] }
+path = { kind = "circle", radius = 0.05, time_law = "sin2sin2" }
+
 [[arm]]
 name = "right"
-robot = "planar4"
-base = "base"
-tip = "tip"
+robot = "panda"
+base = "panda_link0"
+tip = "panda_hand_tcp"
 task = "position-xy"
-q0 = [0.6, 0.5, 0.4, 0.3]
-mount = { xyz = [0.5, 0, 0] }
-path = { kind = "circle", radius = 0.1, time_law = "sin2sin2" }
+q0 = [0.0, "-pi/4", 0.0, "-3*pi/4", 0.0, "pi/2", "pi/4"]
+mount = { xyz = [0.5, 0, 0.4] }
+path = { kind = "circle", radius = 0.05, time_law = "sin2sin2" }
 "#;
 
 fn read(text: &str, kinds: &Kinds) -> Result<Scenario, ScenarioError> {
@@ -64,7 +83,7 @@ fn apart(one: &[f64], other: &[f64]) -> f64 {
 fn order(text: &str, kinds: &Kinds) -> f64 {
     let error = |sigma: &str| {
         let text = text.replace("sigma = 0.01", &format!("sigma = {sigma}"));
-        run(&text, kinds).unwrap().arms[0].max_error_steady
+        run(&text, kinds).expect("a sound scenario").arms[0].max_error_steady
     };
     (error("0.02") / error("0.01")).log2()
 }
@@ -78,7 +97,7 @@ impl Criterion for Drift {
     }
 
     fn rate(&self) -> Option<f64> {
-        Some(0.0)
+        None
     }
 }
 
@@ -135,7 +154,7 @@ fn the_posture_holds_the_joints_where_they_start_or_pulls_them_elsewhere() {
 #[test]
 fn a_posture_sees_the_joints_of_all_arms_that_are_tied() {
     let criterion = "h = 0.4\n[[law.criterion]]\nkind = \"posture\"\nrate = 2";
-    let tied = format!("{ONE}{OTHER}[[task]]\nkind = \"distance\"\narms = [\"left\", \"right\"]\n")
+    let tied = format!("{PAIR}[[task]]\nkind = \"distance\"\narms = [\"left\", \"right\"]\n")
         .replace("h = 0.4", criterion);
     let plan = run(&tied, &Kinds::builtin()).unwrap();
     assert!(plan.is_completed() && plan.tasks[0].max_error() < 1e-5);
@@ -199,7 +218,7 @@ struct Level {
 }
 
 impl Task for Level {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "level"
     }
 
@@ -208,8 +227,8 @@ impl Task for Level {
     }
 
     fn evaluate(&self, at: &TaskInstant<'_>, out: &mut TaskRows) {
-        let up = Vector6::new(0.0, self.factor, 0.0, 0.0, 0.0, 0.0);
-        let height = |i: usize| at.tip(i).pose.translation.y;
+        let up = Vector6::new(0.0, 0.0, self.factor, 0.0, 0.0, 0.0);
+        let height = |i: usize| at.tip(i).pose.translation.z;
         out.error[0] = self.factor * (height(1) - height(0) - self.offset);
         out.feedforward[0] = 0.0;
         out.add_to_row(0, at.tip(1), &up);
@@ -225,7 +244,7 @@ const LEVEL: Kind<MakeTask> = Kind::new(
         tips: 2,
         make: |given, start| {
             let [one, other] = start.tips else { return Err("this is about two tips".to_owned()) };
-            let offset = other.translation.y - one.translation.y;
+            let offset = other.translation.z - one.translation.z;
             Ok(Box::new(Level { offset, factor: given.number("factor").unwrap_or(1.0) }))
         },
     },
@@ -234,7 +253,7 @@ const LEVEL: Kind<MakeTask> = Kind::new(
 #[test]
 fn a_task_of_ones_own_ties_two_tips() {
     let kinds = Kinds::builtin().with_task(LEVEL);
-    let own = format!("{ONE}{OTHER}[[task]]\nkind = \"level\"\narms = [\"left\", \"right\"]\nfactor = 2\n");
+    let own = format!("{PAIR}[[task]]\nkind = \"level\"\narms = [\"left\", \"right\"]\nfactor = 2\n");
     let plan = run(&own, &kinds).unwrap();
     assert_eq!((plan.tasks[0].name.as_str(), plan.tasks[0].rows), ("level", 1));
     assert!(plan.is_completed() && plan.tasks[0].max_error() < 1e-5, "{}", plan.tasks[0].max_error());
@@ -247,15 +266,16 @@ fn a_task_of_ones_own_ties_two_tips() {
 #[test]
 fn tips_keep_their_distance_or_the_one_that_is_asked_for() {
     let kinds = Kinds::builtin();
-    // Each tip alone is free to move along one axis: the arms have four joints for two rows.
-    let tied = |more: &str| {
-        format!("{ONE}{OTHER}[[task]]\nkind = \"distance\"\narms = [\"left\", \"right\"]\n{more}\n")
-    };
+    let tied =
+        |more: &str| format!("{PAIR}[[task]]\nkind = \"distance\"\narms = [\"left\", \"right\"]\n{more}\n");
     let plan = run(&tied(""), &kinds).unwrap();
     assert!(plan.is_completed() && plan.tasks[0].max_error() < 1e-5, "{}", plan.tasks[0].max_error());
     assert_eq!(plan.tasks[0].arms, ["left", "right"]);
+    let nearer = run(&tied("to = 0.6"), &kinds).unwrap();
+    assert!(nearer.is_completed() && nearer.tasks[0].max_error() < 1e-5, "{}", nearer.tasks[0].max_error());
+    assert!(apart(&last(&plan, 0), &last(&nearer, 0)) > 1e-3);
     let spec = TaskSpec::new("distance", ["left", "right"]);
-    let mut scenario = read(&format!("{ONE}{OTHER}"), &kinds).unwrap();
+    let mut scenario = read(PAIR, &kinds).unwrap();
     scenario.task.push(spec);
     assert_eq!(read(&scenario.to_toml(), &kinds).unwrap(), read(&tied(""), &kinds).unwrap());
     for (more, said) in [
@@ -296,6 +316,33 @@ impl TimeLaw for Cubic {
 
 #[test]
 fn a_curve_and_a_time_law_of_ones_own_are_named_in_a_path() {
+    let kinds =
+        Kinds::builtin()
+            .with_curve(HOOP)
+            .with_time_law(Kind::new("cubic", "t^2 (3 - 2 t).", &[], || Box::new(Cubic)));
+    let own = ONE.replace("kind = \"circle\", radius = 0.1", "kind = \"hoop\", size = 0.05");
+    let (plain, hooped) = (run(ONE, &kinds).unwrap(), run(&own, &kinds).unwrap());
+    assert_eq!(last(&plain, 0), last(&hooped, 0));
+    let cubic = run(&own.replace("sin2sin2", "cubic"), &kinds).unwrap();
+    assert!(cubic.is_completed() && apart(&cubic.arms[0].positions[..], &plain.arms[0].positions[..]) > 1e-3);
+    let message = refusal(&own.replace("\"hoop\"", "\"hop\""), &kinds);
+    assert!(message.ends_with("fourier, hoop; did you mean hoop?"), "{message}");
+    let message = refusal(&own.replace("size = 0.05", "radius = 0.05"), &kinds);
+    assert!(
+        message.ends_with("it has plane, rotation, from, sweep, center, size, time_law, turn"),
+        "{message}"
+    );
+    let message = refusal(&own.replace("sin2sin2", "cubik"), &kinds);
+    assert_eq!(
+        message,
+        "arm.left.path.time_law: \"cubik\" is not one of sin2, sin2sin2, linear, quintic, cubic; did you mean cubic?"
+    );
+    let message = refusal(&own, &Kinds::builtin());
+    assert!(message.starts_with("arm.left.path.kind: \"hoop\" is not one of circle"), "{message}");
+}
+
+#[test]
+fn what_a_program_makes_is_read_like_a_file() {
     let kinds = Kinds::builtin();
     let mut scenario = read(ONE, &kinds).unwrap();
     let mut posture = CriterionSpec::new("posture");
