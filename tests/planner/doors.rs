@@ -1,5 +1,6 @@
 //! Laws and tasks of one's own, through the doors that the built-in ones use.
 
+use approx::assert_abs_diff_eq;
 use kinstep::formula::FormulaTable;
 use kinstep::integrate::Starter;
 use kinstep::law::{
@@ -159,7 +160,7 @@ fn a_law_that_is_not_linear_keeps_the_order_and_is_held_to_the_range_of_its_coef
         builder("la6-wang-guo", sigma).arm(arm).build().unwrap().run().arms[0].max_error_steady
     };
     let slope = (run(0.01) / run(0.005)).log2();
-    assert!((slope - 4.0).abs() < 0.3, "{slope}");
+    assert_abs_diff_eq!(slope, 4.0, epsilon = 0.3);
     // The feedback of this row acts on the newest state alone, and h = 1 lies in its range; beta's own range is narrower.
     let build = |law: Option<Capped>| {
         let arm = on_circle("arm", planar(0.0), &LEFT, 0.2);
@@ -286,12 +287,12 @@ fn a_task_over_two_tips_is_met_with_the_order_of_the_row() {
     let wanted = distance_of(&both(), 0.3);
     for n in (0..plan.samples()).step_by(17) {
         let error = distance(&plan, n) - wanted.wanted(plan.time(n)).0;
-        assert!((error - plan.tasks[0].error(n)[0]).abs() < 1e-12);
+        assert_abs_diff_eq!(error, plan.tasks[0].error(n)[0], epsilon = 1e-12);
     }
     let worst =
         |plan: &Plan| plan.tasks[0].max_error().max(plan.arms[0].max_error).max(plan.arms[1].max_error);
     let slope = (worst(&pair(0.01)) / worst(&pair(0.005))).log2();
-    assert!((slope - 4.0).abs() < 0.4, "{slope}");
+    assert_abs_diff_eq!(slope, 4.0, epsilon = 0.4);
     assert!(worst(&plan) < 1e-4, "{}", worst(&plan));
 }
 
@@ -330,9 +331,7 @@ fn arms_that_nothing_ties_move_as_one_system_as_they_do_apart() {
     };
     let (together, apart) = (run(true), run(false));
     for (together, apart) in together.arms.iter().zip(&apart.arms) {
-        for (a, b) in together.positions.iter().zip(&apart.positions) {
-            assert!((a - b).abs() < 1e-12);
-        }
+        assert_abs_diff_eq!(&together.positions[..], &apart.positions[..], epsilon = 1e-12);
     }
 }
 

@@ -7,6 +7,7 @@ use kinstep::task::{
 use nalgebra::{Unit, Vector3};
 use proptest::prelude::*;
 use proptest::sample::select;
+use proptest::strategy::Union;
 use std::f64::consts::TAU;
 
 /// The form of a path.
@@ -37,9 +38,8 @@ impl Shape {
                 ("fourier", given.with("cosines", vectors(0)).with("sines", vectors(1)))
             }
             Self::Curve(name, numbers) => {
-                let mut numbers = numbers.iter().cycle();
-                let mut whole =
-                    |low: i32, high: i32| low + numbers.next().map_or(0, |number| number % (high - low + 1));
+                let mut numbers = numbers.iter();
+                let mut whole = |low: i32, _| numbers.next().copied().unwrap_or(low);
                 let draw = curve(name).and_then(|kind| kind.draw);
                 (name, draw.map_or(given, |draw| draw(scale, &mut whole)))
             }
@@ -166,15 +166,19 @@ pub fn paths() -> impl Strategy<Value = PathCase> + Clone {
     let vector = || prop::array::uniform3(-10_i8..=10);
     let fourier =
         prop::collection::vec((vector(), vector()).prop_map(|(a, b)| [a, b]), 1..=3).prop_map(Shape::Fourier);
-    let is_drawn = |kind: &&CurveKind| kind.draw.is_some() && matches!(kind.make, MakeCurve::Planar(_));
-    let planar: Vec<&str> = CURVES.iter().filter(is_drawn).map(|kind| kind.name).collect();
-    let numbers = prop::collection::vec(0..12_i32, 4);
-    let curve = (select(planar.clone()), numbers).prop_map(|(name, numbers)| Shape::Curve(name, numbers));
-    let shape = prop_oneof![
-        2 => fourier,
-        planar.len() as u32 => curve,
-    ];
-    of_shape(shape)
+    let planar = CURVES.iter().filter(|kind| matches!(kind.make, MakeCurve::Planar(_)));
+    let shapes = planar.filter_map(|kind| Some((1, drawn(kind)?)));
+    of_shape(Union::new_weighted(std::iter::once((2, fourier.boxed())).chain(shapes).collect()))
+}
+
+/// A curve of that kind with the numbers that its parameters are drawn from, if it says how to draw them.
+fn drawn(kind: &'static CurveKind) -> Option<BoxedStrategy<Shape>> {
+    let mut ranges = Vec::new();
+    (kind.draw?)(1.0, &mut |low, high| {
+        ranges.push(low..=high);
+        low
+    });
+    Some(ranges.prop_map(|numbers| Shape::Curve(kind.name, numbers)).boxed())
 }
 
 /// Lines and arcs that move in x and y at least, of the same extent as [`paths`]: they end away from where they begin.

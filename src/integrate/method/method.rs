@@ -27,7 +27,7 @@ use crate::integrate::error::IntegrateError;
 ///     solution.step(&mut swing);
 /// }
 /// assert!((solution.state()[0] - 1.0_f64.sin().exp()).abs() < 1e-9);
-/// assert!(solution.error_estimate().unwrap()[0].abs() < 1e-11);
+/// assert!(solution.error_estimate().unwrap()[0].abs() < 1e-10);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use crate::math::Rational;
 use num_traits::Zero;
 
 /// Iterations before it is given up.
-const MOST_ITERATIONS: usize = 100;
+const MOST_ITERATIONS: usize = 200;
 /// Two iterates may differ by this many resolutions of the largest component.
 const RESOLUTIONS: f64 = 16.0;
 
@@ -14,7 +14,7 @@ const RESOLUTIONS: f64 = 16.0;
 ///
 /// Each iteration multiplies the error by about `first L_f + second L_g`, with the Lipschitz constants `L_f` and `L_g` of the
 /// two parts: this is for problems that are not stiff. It ends when two iterates differ by at most 16 times the scalar's
-/// [resolution](Scalar::RESOLUTION) of the largest component, and gives up where that takes more than 100 iterations or an
+/// [resolution](Scalar::RESOLUTION) of the largest component, and gives up where that takes more than 200 iterations or an
 /// iterate is not finite. All memory is allocated in [`new`](Self::new).
 ///
 /// ```

@@ -20,12 +20,12 @@ pub struct DerivativeErrors {
 /// ```
 /// use kinstep::planner::{Arm, derivative_errors};
 /// use kinstep::robot::embedded;
-/// use kinstep::task::{Circle, Motion, Planar, Sin2, TaskKind, Tracking};
+/// use kinstep::task::{Circle, Motion, Planar, Quintic, TaskKind, Tracking};
 ///
 /// let chain = embedded::get("planar4")?.chain("base", "tip")?;
 /// let q0 = vec![0.3, 0.4, 0.5, 0.6];
 /// let start = chain.forward(&q0, &mut chain.scratch()).pose();
-/// let motion = || Motion::from_pose(Planar::whole(Circle { radius: 0.3 }), Sin2, 2.0, &start);
+/// let motion = || Motion::from_pose(Planar::whole(Circle { radius: 0.3 }), Quintic, 2.0, &start);
 /// let task = Tracking { kind: TaskKind::PositionXy, motion: motion() };
 /// let arm = Arm::new("arm", chain, q0, TaskKind::PositionXy, motion());
 /// let errors = derivative_errors(&[arm], &task, 0.0, 1e-5);

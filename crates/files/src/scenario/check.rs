@@ -125,7 +125,9 @@ impl Scenario {
 
     fn check_size(&self) -> Result<(), ScenarioError> {
         let steps = self.duration.value() / self.sigma.value();
-        let joints = self.arm.iter().map(|arm| arm.q0.len()).sum();
+        // A problem has components where a plan has joints.
+        let components = self.problem.as_ref().map_or(0, |problem| problem.equations.len().max(1));
+        let joints = components + self.arm.iter().map(|arm| arm.q0.len()).sum::<usize>();
         let bytes = sample_bytes(steps, joints, self.arm.len());
         require(bytes <= MAX_SAMPLE_BYTES, &KeyPath::dotted("sigma"), || {
             let (gigabytes, hours) = (bytes / 1e9, steps * self.arm.len() as f64 * 1e-6 / 3600.0);
