@@ -398,7 +398,7 @@ fn what_a_pair_remembers_is_the_prediction_in_pec_and_the_state_in_pece() {
         stepper.step(&mut field);
         let (mut x, mut older, mut newer) = (swing(sigma), f(0.0, 1.0), f(sigma, swing(sigma)));
         for n in 1..30 {
-            let t = (n + 1) as f64 * sigma;
+            let t = f64::from(n + 1) * sigma;
             let predicted = x + sigma * (1.5 * newer - 0.5 * older);
             let of_prediction = f(t, predicted);
             x += sigma * 0.5 * (of_prediction + newer);
@@ -629,7 +629,7 @@ impl StepController<f64> for Bumpy {
 }
 
 fn bumpy_errors(row: &Coefficients<f64>, mut field: impl Field<f64>, exact: fn(f64) -> f64) -> Vec<f64> {
-    let mut run = |steps: usize| {
+    let run = |steps: usize| {
         let mean = 2.0 / steps as f64;
         let start = Starter::Given(vec![vec![exact(mean)]]);
         let mut stepper =
@@ -642,7 +642,7 @@ fn bumpy_errors(row: &Coefficients<f64>, mut field: impl Field<f64>, exact: fn(f
         }
         most
     };
-    [80, 160, 320, 640].map(|steps| run(steps)).to_vec()
+    [80, 160, 320, 640].map(run).to_vec()
 }
 
 #[test]
@@ -740,14 +740,14 @@ fn a_candidate_can_be_looked_at_and_dropped() {
 }
 
 /// The elementary controller: the error of a step is kept near a tolerance.
-struct Tolerance {
+struct ElementaryController {
     tolerance: f64,
     rejected: usize,
     shortest: f64,
     longest: f64,
 }
 
-impl StepController<f64> for Tolerance {
+impl StepController<f64> for ElementaryController {
     fn judge(&mut self, attempt: &Attempt<'_, f64>) -> Decision<f64> {
         let error = attempt.error.unwrap()[0].abs().max(1e-3 * self.tolerance);
         let power = 1.0 / (attempt.order as f64 + 1.0);
@@ -772,7 +772,8 @@ fn a_pair_controls_its_steps_by_the_error_that_it_tells() {
         let method = Method::pair(Arc::new(VaryingAb2), Arc::new(VaryingTrapezoid), Mode::Pece);
         let mut stepper =
             Multistep::of_method(method, &Starter::Rk4, &field, 0.0, 0.3, &[peak(0.0)]).unwrap();
-        let mut controller = Tolerance { tolerance, rejected: 0, shortest: f64::INFINITY, longest: 0.0 };
+        let mut controller =
+            ElementaryController { tolerance, rejected: 0, shortest: f64::INFINITY, longest: 0.0 };
         let mut most = 0.0_f64;
         while stepper.time() < 10.0 {
             assert_eq!(stepper.step_under(&mut field, &mut controller), Status::Running);

@@ -1,5 +1,7 @@
 //! Laws and tasks of one's own, through the doors that the built-in ones use.
 
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
+
 use approx::assert_abs_diff_eq;
 use kinstep::formula::FormulaTable;
 use kinstep::integrate::Starter;
@@ -108,7 +110,7 @@ impl Law for Capped {
         let next = instant.next.unwrap();
         let foretold = next.known.iter().zip(&self.answer).map(|(known, answer)| known + next.first * answer);
         seen.foretold = Some(foretold.collect());
-        seen.velocity = self.answer.clone();
+        seen.velocity.clone_from(&self.answer);
         seen.accepted.push(instant.t);
     }
 
@@ -205,7 +207,7 @@ impl Distance {
 }
 
 impl Task for Distance {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "distance"
     }
 
@@ -233,7 +235,7 @@ impl Task for Distance {
 struct Height(Motion);
 
 impl Task for Height {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "height"
     }
 
@@ -296,28 +298,29 @@ fn a_task_over_two_tips_is_met_with_the_order_of_the_row() {
     assert!(worst(&plan) < 1e-4, "{}", worst(&plan));
 }
 
+/// The Jacobian of this one is of the other sign in one arm.
+struct Wrong(Distance);
+impl Task for Wrong {
+    fn name(&self) -> &'static str {
+        "wrong"
+    }
+    fn rows(&self) -> usize {
+        1
+    }
+    fn evaluate(&self, at: &TaskInstant<'_>, out: &mut TaskRows) {
+        self.0.evaluate(at, out);
+        for joint in 0..4 {
+            out.jacobian[(0, joint)] *= -1.0;
+        }
+    }
+}
+
 #[test]
 fn derivatives_of_a_task_are_held_against_differences() {
     let arms = both();
     let errors = derivative_errors(&arms, &distance_of(&arms, 0.3), 0.0, 1e-5);
     assert!(errors.error < 1e-12 && errors.jacobian < 1e-8 && errors.feedforward < 1e-8, "{errors:?}");
 
-    /// The Jacobian of this one is of the other sign in one arm.
-    struct Wrong(Distance);
-    impl Task for Wrong {
-        fn name(&self) -> &str {
-            "wrong"
-        }
-        fn rows(&self) -> usize {
-            1
-        }
-        fn evaluate(&self, at: &TaskInstant<'_>, out: &mut TaskRows) {
-            self.0.evaluate(at, out);
-            for joint in 0..4 {
-                out.jacobian[(0, joint)] *= -1.0;
-            }
-        }
-    }
     let wrong = derivative_errors(&arms, &Wrong(distance_of(&arms, 0.3)), 0.0, 1e-5);
     assert!(wrong.jacobian > 0.1, "{wrong:?}");
 }

@@ -76,6 +76,10 @@ impl<T: Scalar> Multistep<T> {
     /// # Errors
     /// An unstable row (of a pair, the corrector), a row whose kind does not fit its place, an implicit-explicit row on a field of
     /// one part, an initial or given state of the wrong length, a wrong number of given states.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a method is mostly made where it is needed, as an argument"
+    )]
     pub fn of_method(
         method: Method<T>,
         starter: &Starter<T>,

@@ -17,7 +17,7 @@ impl<T: Scalar> Multistep<T> {
         for &(age, weight) in &weights.older.0 {
             let sample = self.history().x.get(age);
             for (i, known) in known.iter_mut().enumerate() {
-                *known = *known + weight * (sample[i] - newest[i]);
+                *known += weight * (sample[i] - newest[i]);
             }
         }
         let second = self.history().g.as_ref().map(|g| add_past(&weights.second, g, known));
@@ -41,7 +41,7 @@ fn add_past<T: Scalar>(terms: &Terms<T>, ring: &Ring<T>, known: &mut [T]) -> T {
         // One evaluation is missing yet, so everything is one place younger than it will be.
         let sample = ring.get(age - 1);
         for (known, entry) in known.iter_mut().zip(sample) {
-            *known = *known + weight * *entry;
+            *known += weight * *entry;
         }
     }
     newest

@@ -54,7 +54,9 @@ impl SynchronousField {
         let mut field = Self::without_groups(arms, systems, gain);
         let (coupled, single): (Vec<usize>, Vec<usize>) =
             moving.iter().partition(|&&system| field.systems[system].arms().count() > 1);
-        coupled.into_iter().for_each(|system| field.add_alone(system));
+        for system in coupled {
+            field.add_alone(system);
+        }
         field.add_groups(single);
         field
     }
@@ -64,7 +66,9 @@ impl SynchronousField {
         let mut field = Self::without_groups(arms, systems, gain);
         let mut all: Vec<usize> = (0..field.systems.len()).collect();
         all.sort_by_key(|&system| field.systems[system].arms().count() == 1);
-        all.into_iter().for_each(|system| field.add_alone(system));
+        for system in all {
+            field.add_alone(system);
+        }
         field
     }
 

@@ -325,12 +325,11 @@ impl Union {
         let mut union = Self::default();
         for arm in arms {
             for joint in arm.chain.joints() {
-                match union.place(arm, &joint.name) {
-                    Some(place) => union.limits[place] = narrower(&union.limits[place], &joint.limits),
-                    None => {
-                        union.joints.push((Owner::of(arm), joint.name.clone()));
-                        union.limits.push(joint.limits);
-                    }
+                if let Some(place) = union.place(arm, &joint.name) {
+                    union.limits[place] = narrower(&union.limits[place], &joint.limits);
+                } else {
+                    union.joints.push((Owner::of(arm), joint.name.clone()));
+                    union.limits.push(joint.limits);
                 }
             }
         }
