@@ -9,6 +9,12 @@ pub enum IntegrateError {
     /// The row may not run: it is implicit, or not zero-stable.
     #[error(transparent)]
     NotRunnable(#[from] NotRunnable),
+    /// The sampling gap is zero, infinite or NaN.
+    #[error("the sampling gap is {text}; it must be a number other than zero")]
+    SamplingGap {
+        /// What was given.
+        text: String,
+    },
     /// The initial state, or a given one, does not fit the field.
     #[error("{what} has {got} entries where the right-hand side has {expected}")]
     Dimension {

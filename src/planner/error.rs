@@ -126,9 +126,9 @@ pub enum PlannerError {
         /// Where the joint starts there [rad or m].
         other_value: f64,
     },
-    /// An arm that shares joints has a law that can not be resolved together with others.
+    /// An arm that is resolved together with others has a law of its own that is not the plain least-norm law.
     #[error(
-        "arm `{arm}` shares joints with another arm, and its law is not the plain least-norm law, the only one that resolves several arms together"
+        "arm `{arm}` is resolved together with other arms and was given a law that is not the plain least-norm law; give one law to all of them, with `JointSystem::with_law`"
     )]
     SharedLaw {
         /// The arm.
@@ -158,6 +158,17 @@ pub enum PlannerError {
         /// What the law says of it.
         objection: String,
     },
+    /// A task can not be a part of any system.
+    #[error("task `{task}` {problem}")]
+    Task {
+        /// The task.
+        task: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A system has no arm.
+    #[error("a system was asked for that names no arm; name those that are to be resolved together")]
+    SystemWithoutArms,
     /// A task over several tips does not begin where they are.
     #[error(
         "task `{task}` has an error of {distance:.6} m (or rad) at q0; change q0, or have the task begin there"

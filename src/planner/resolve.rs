@@ -3,6 +3,7 @@
 use super::PlannerError;
 use super::system::{AddedTask, Arm, ArmRuntime, JointSystem, System, check_common_starts, joint_sets};
 use crate::law::Law;
+use crate::task::Task;
 
 /// The arms with their scratch memory, and the systems that they form: first those of several arms, then single arms.
 pub(super) fn resolved(
@@ -10,6 +11,12 @@ pub(super) fn resolved(
     mut asked: Vec<JointSystem>,
     sigma: f64,
 ) -> Result<(Vec<ArmRuntime>, Vec<System>), PlannerError> {
+    for arm in &arms {
+        check_task(&*arm.task, 1, 1.0)?;
+    }
+    for added in asked.iter().flat_map(|system| &system.tasks) {
+        check_task(&*added.task, added.arms.len(), added.weight)?;
+    }
     let ties: Vec<Vec<usize>> = asked.iter().map(|system| tie(system, &arms)).collect::<Result<_, _>>()?;
     let sets = joint_sets(&arms, &ties);
     let is_apart = |arm: &usize| !sets.iter().any(|set| set.contains(arm));
@@ -33,8 +40,25 @@ pub(super) fn resolved(
     Ok((runtimes, systems))
 }
 
+/// Checks what a task says of itself, and that it is given as many tips as it needs.
+fn check_task(task: &dyn Task, tips: usize, weight: f64) -> Result<(), PlannerError> {
+    let problem = if task.rows() == 0 {
+        "has no rows; it needs one at least".to_owned()
+    } else if tips < task.least_tips() {
+        format!("needs {} tips and was given {tips}", task.least_tips())
+    } else if !(weight > 0.0 && weight.is_finite()) {
+        format!("has weight {weight}; a weight is a positive number")
+    } else {
+        return Ok(());
+    };
+    Err(PlannerError::Task { task: task.name().to_owned(), problem })
+}
+
 /// The arms that are asked to be one system, by their indices.
 fn tie(system: &JointSystem, arms: &[Arm]) -> Result<Vec<usize>, PlannerError> {
+    if system.arms.is_empty() {
+        return Err(PlannerError::SystemWithoutArms);
+    }
     let index = |name: &String| {
         arms.iter().position(|arm| arm.name == *name).ok_or_else(|| PlannerError::UnknownArm {
             name: name.clone(),

@@ -49,6 +49,10 @@ impl Task for Distance {
         1
     }
 
+    fn least_tips(&self) -> usize {
+        2
+    }
+
     fn evaluate(&self, at: &TaskInstant<'_>, out: &mut TaskRows) {
         let (one, other) = (at.tip(0), at.tip(1));
         let apart = other.pose.translation.vector - one.pose.translation.vector;

@@ -22,6 +22,10 @@ use nalgebra::{DMatrix, IsometryMatrix3, Vector6};
 ///         1
 ///     }
 ///
+///     fn least_tips(&self) -> usize {
+///         2
+///     }
+///
 ///     fn evaluate(&self, at: &TaskInstant<'_>, out: &mut TaskRows) {
 ///         let (one, other) = (at.tip(0), at.tip(1));
 ///         let apart = other.pose.translation.vector - one.pose.translation.vector;
@@ -40,6 +44,11 @@ pub trait Task: Send + Sync {
 
     /// How many rows it has: at least one.
     fn rows(&self) -> usize;
+
+    /// How many tips it needs to be given at least: one unless overridden. Fewer are refused before a run.
+    fn least_tips(&self) -> usize {
+        1
+    }
 
     /// Writes the rows at an instant: `error`, `feedforward` and `jacobian`, which is zero before.
     ///

@@ -951,3 +951,12 @@ fn a_built_in_ramp_is_the_ladder_of_the_table() {
     };
     assert_eq!(run(&Starter::Ramp), run(&Starter::Rows(ladder)));
 }
+
+#[test]
+fn a_gap_that_goes_nowhere_is_refused() {
+    let field = Ode::new(1, |_t, x: &[f64], f: &mut [f64]| f[0] = -x[0]);
+    for sigma in [0.0, f64::NAN, f64::INFINITY] {
+        let refused = Multistep::new(row("ab2"), &Starter::Rk4, &field, 0.0, sigma, &[1.0]).err();
+        assert!(matches!(refused, Some(IntegrateError::SamplingGap { .. })), "{sigma}");
+    }
+}

@@ -215,6 +215,10 @@ impl Task for Distance {
         1
     }
 
+    fn least_tips(&self) -> usize {
+        2
+    }
+
     fn component(&self, _row: usize) -> Component {
         Component::Linear(0)
     }
@@ -323,6 +327,10 @@ fn derivatives_of_a_task_are_held_against_differences() {
 
     let wrong = derivative_errors(&arms, &Wrong(distance_of(&arms, 0.3)), 0.0, 1e-5);
     assert!(wrong.jacobian > 0.1, "{wrong:?}");
+    // What is no number is not right either.
+    let nowhere = Distance { at_start: f64::NAN, swing: 0.0 };
+    let nowhere = derivative_errors(&arms, &nowhere, 0.0, 1e-5);
+    assert!(!(nowhere.jacobian <= 1.0) && !(nowhere.feedforward <= 1.0), "{nowhere:?}");
 }
 
 #[test]
@@ -355,6 +363,13 @@ fn systems_that_can_not_be_are_refused_by_name() {
     let away = refused(pair().with_task(Distance { at_start: 7.0, swing: 0.0 }), None);
     assert!(away.contains("task `distance` has an error of"), "{away}");
     let second = Distance { swing: 0.0, ..distance_of(&both(), 0.0) };
+    let nobody = refused(JointSystem::of(Vec::<String>::new()), None);
+    assert!(nobody.contains("names no arm"), "{nobody}");
+    let one = refused(JointSystem::of(["left"]).with_task(distance_of(&both(), 0.0)), None);
+    assert!(one.contains("task `distance` needs 2 tips and was given 1"), "{one}");
+    let distance = distance_of(&both(), 0.0);
+    let weightless = refused(pair().with_task_of(["left", "right"], distance, 0, f64::NAN), None);
+    assert!(weightless.contains("weight NaN"), "{weightless}");
     let stack = refused(pair().with_task_of(["left", "right"], second, 1, 1.0), None);
     assert!(stack.contains("`distance` has priority 1"), "{stack}");
 }

@@ -106,6 +106,9 @@ impl<T: Scalar> Multistep<T> {
     ) -> Result<Self, IntegrateError> {
         let dimension = field.dimension();
         check_length("the initial state", x0, dimension)?;
+        if !sigma.is_finite() || sigma == T::zero() {
+            return Err(IntegrateError::SamplingGap { text: format!("{sigma:?}") });
+        }
         let starter = RunningStarter::new(starter, method, field, sigma)?;
         let row = WeightedRow::new(method.predictor().unwrap_or_else(|| method.row()), sigma);
         let correction = Correction::new(method, field, sigma).map(Box::new);

@@ -122,7 +122,7 @@ fn damping_warning(plan: &ArmPlan, threshold: f64) -> Option<String> {
 
 /// A criterion whose rate depends on the configuration can only be watched.
 fn rate_warning(arm: &str, (rate, at): (f64, f64), limit: f64) -> Option<String> {
-    (rate > limit).then(|| {
+    (!(rate <= limit)).then(|| {
         format!(
             "arm `{arm}`: the null-space criteria reached a rate of {rate:.6} 1/s at t = {at:.6} s, and at this sigma the formula follows rates below {limit:.6} 1/s only; lower their rates or sigma"
         )

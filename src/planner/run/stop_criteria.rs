@@ -3,7 +3,7 @@
 use super::plan::{PlanStatus, Stop};
 use super::reachability;
 use crate::law::{Conflict, Infeasible};
-use crate::planner::system::{ArmRuntime, Bounds, Deviation, System};
+use crate::planner::system::{ArmRuntime, Bounds, Coupling, Deviation, System};
 use crate::task::Reference;
 
 /// The fraction that an arm of a stable loop is held to once it came near a singularity: whatever it loses there, no
@@ -18,10 +18,12 @@ pub(in crate::planner) fn check_start(arms: &mut [ArmRuntime]) -> Option<Stop> {
         runtime.was_singular = runtime.is_singular();
     }
     let runtime = arms.iter().find(|runtime| runtime.was_singular)?;
-    let of = if runtime.is_coupled {
-        "the stacked task Jacobian of all arms that share its joints".to_owned()
-    } else {
-        format!("its {}-row task Jacobian", runtime.arm.task.rows())
+    let of = match runtime.coupling {
+        Coupling::None => format!("its {}-row task Jacobian", runtime.arm.task.rows()),
+        Coupling::Joints => "the stacked task Jacobian of all arms that share its joints".to_owned(),
+        Coupling::Tasks => {
+            "the stacked task Jacobian of all arms that are resolved with it (where what one task asks for follows from the others, no q0 is regular)".to_owned()
+        }
     };
     let reason = format!(
         "arm `{}` starts in a singular configuration: the smallest singular value of {of} at q0 is {:.3e}, below the threshold {:.3e}; choose another q0 (a bent arm) or a task with fewer components",
@@ -85,10 +87,14 @@ fn diverged(runtime: &ArmRuntime, t: f64, remedy: &str) -> Stop {
 
 fn singular(runtime: &ArmRuntime, t: f64, reference: Option<&Reference>) -> Stop {
     // What a set of arms can reach at once is not known from what each of them can.
-    let (of, reached) = if runtime.is_coupled {
-        ("the Jacobian of all arms that share its joints", "by this arm if it were alone")
-    } else {
-        ("its Jacobian", "from another q0 for instance")
+    let (of, reached) = match runtime.coupling {
+        Coupling::None => ("its Jacobian", "from another q0 for instance"),
+        Coupling::Joints => {
+            ("the Jacobian of all arms that share its joints", "by this arm if it were alone")
+        }
+        Coupling::Tasks => {
+            ("the Jacobian of all arms that are resolved with it", "by this arm if it were alone")
+        }
     };
     let verdict = reference.map_or_else(
         || "whether its task can be met there is not known".to_owned(),
@@ -132,7 +138,10 @@ pub(in crate::planner) fn check_added_tasks(system: &System, arms: &[ArmRuntime]
         let (status, why) = if first.stop_criteria().is_near_singular(&first.resolution) {
             (PlanStatus::Singular, "their Jacobian is near a singularity")
         } else {
-            (PlanStatus::Diverged, "their Jacobian is far from singular: sigma is too coarse, or h too large")
+            (
+                PlanStatus::Diverged,
+                "their Jacobian is far from singular: either it can not be met together with the arms' own tasks, or sigma is too coarse",
+            )
         };
         let names = system.arms_of(state).collect::<Vec<_>>().join("`, `");
         let reason = format!(

@@ -8,6 +8,17 @@ use crate::robot::ChainScratch;
 use crate::task::Tip;
 use nalgebra::Vector6;
 
+/// Why arms are resolved together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::planner) enum Coupling {
+    /// They are not.
+    None,
+    /// They share joints.
+    Joints,
+    /// They were tied, by a task for instance.
+    Tasks,
+}
+
 /// An arm with its scratch memory and what is known of it at the present sample.
 pub(in crate::planner) struct ArmRuntime {
     pub(in crate::planner) arm: Arm,
@@ -21,8 +32,8 @@ pub(in crate::planner) struct ArmRuntime {
     pub(in crate::planner) resolution: Resolution,
     /// What the loop sees in place of the truth; nothing but the truth without noise.
     pub(in crate::planner) disturbance: Option<Disturbance>,
-    /// Whether other arms are resolved together with it.
-    pub(in crate::planner) is_coupled: bool,
+    /// Why other arms are resolved together with it.
+    pub(in crate::planner) coupling: Coupling,
     /// The task error at which it is lost.
     pub(in crate::planner) bounds: Bounds,
     /// The singular value below which its law calls a configuration singular.
@@ -42,7 +53,7 @@ impl ArmRuntime {
             error: Vector6::zeros(),
             resolution: Resolution::default(),
             disturbance: None,
-            is_coupled: false,
+            coupling: Coupling::None,
             bounds: Bounds { length: arm.length(), has_too_few_joints: joints < arm.task.rows() },
             threshold: 0.0,
             was_singular: true,

@@ -49,7 +49,8 @@ pub fn derivative_errors(arms: &[Arm], task: &dyn Task, t: f64, step: f64) -> De
         jacobian.column_mut(joint).copy_from_slice(&difference(moved(step), moved(-step)));
     }
     let in_time = difference(rows_at(arms, task, t + step, &q), rows_at(arms, task, t - step, &q));
-    let largest = |sum: f64, difference: f64| sum.max(difference.abs());
+    // A NaN is the largest of all: what can not be compared is not right.
+    let largest = |sum: f64, difference: f64| if difference.abs() <= sum { sum } else { difference.abs() };
     DerivativeErrors {
         error: stated.error.iter().map(|entry| entry * entry).sum::<f64>().sqrt(),
         jacobian: (&jacobian - &stated.jacobian).iter().copied().fold(0.0, largest),

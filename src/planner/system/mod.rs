@@ -20,7 +20,7 @@ pub use joint_sets::joint_sets;
 pub use joint_system::JointSystem;
 pub use monitor::Violation;
 
-pub(super) use arm_runtime::ArmRuntime;
+pub(super) use arm_runtime::{ArmRuntime, Coupling};
 pub(super) use bounds::{Bounds, Deviation};
 pub(super) use disturbance::Disturbance;
 pub(super) use joint_index::JointIndex;

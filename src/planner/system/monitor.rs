@@ -183,7 +183,8 @@ impl Monitor {
             self.smallest_singular_value = resolution.smallest_singular_value;
             self.smallest_at = t;
         }
-        if resolution.criterion_rate > self.largest_rate.0 {
+        // A rate that is not a number is none that could be followed.
+        if !(resolution.criterion_rate <= self.largest_rate.0) {
             self.largest_rate = (resolution.criterion_rate, t);
         }
     }

@@ -1,5 +1,5 @@
 use super::arm::{Arm, tip_of};
-use super::arm_runtime::ArmRuntime;
+use super::arm_runtime::{ArmRuntime, Coupling};
 use super::joint_index::JointIndex;
 use super::joint_system::AddedTask;
 use crate::law::{
@@ -87,9 +87,15 @@ impl System {
         let mut law = law.unwrap_or_else(|| default_law(arms, indices, sigma));
         law.objection(&shape).map_or(Ok(()), Err)?;
         law.prepare(&shape);
+        let joints_apart: usize = members.iter().map(|member| member.places.len()).sum();
+        let coupling = match indices.len() {
+            1 => Coupling::None,
+            _ if joints_apart > shape.joints.len() => Coupling::Joints,
+            _ => Coupling::Tasks,
+        };
         for &arm in indices {
             let runtime = &mut arms[arm];
-            runtime.is_coupled = indices.len() > 1;
+            runtime.coupling = coupling;
             if has_own_law || indices.len() == 1 {
                 runtime.threshold = law.threshold();
             }
