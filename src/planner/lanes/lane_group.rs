@@ -1,8 +1,8 @@
 //! Arms that move in the same way, evaluated together: one in each lane.
 
 use super::arm_group::{ArmGroup, GroupMembers};
-use super::found::Found;
-use super::lane_monitor::{LaneCriteria, LaneMonitor, Look};
+use super::group_result::GroupResult;
+use super::lane_monitor::{LaneCriteria, LaneMonitor, Observation};
 use super::sample::Sample;
 use super::transpose::{Transpose, Transposition};
 use crate::law::{Resolution, is_regular, least_norm};
@@ -23,7 +23,7 @@ pub(in crate::planner) struct LaneGroup<A: LaneArray> {
     recorded: Option<Recorded>,
     /// The references of an instant that is not recorded.
     computed: Vec<Reference>,
-    found: Found<A>,
+    found: GroupResult<A>,
     criteria: LaneCriteria<A>,
     is_clear: bool,
     /// The lanes that their law damped.
@@ -97,7 +97,7 @@ impl<A: LaneArray> LaneGroup<A> {
             scratch: chains.scratch(),
             recorded: Recorded::new(&own, A::WIDTH),
             computed: vec![Reference::REST; A::WIDTH],
-            found: Found::NOTHING,
+            found: GroupResult::NOTHING,
             criteria: LaneCriteria::new(&own),
             is_clear: false,
             damped: vec![false; A::WIDTH],
@@ -207,14 +207,14 @@ impl<A: LaneArray> ArmGroup for LaneGroup<A> {
     }
 
     fn observe(&mut self, group: &mut GroupMembers<'_>, t: f64, sample: &Sample<'_>) {
-        let look = Look {
+        let observation = Observation {
             monitor: &mut self.monitor,
             transpose: &mut self.transpose,
             found: &self.found,
             t,
             sample,
         };
-        if !with_instructions(group.level, look) {
+        if !with_instructions(group.level, observation) {
             self.set_previous(group.arms, sample.previous);
             for (lane, member) in self.members.iter().enumerate() {
                 let state = self.arm(lane);
@@ -266,7 +266,7 @@ struct Evaluation<'a, A: LaneArray> {
     f: &'a mut [f64],
     g: &'a mut [f64],
     gain: f64,
-    found: &'a mut Found<A>,
+    found: &'a mut GroupResult<A>,
 }
 
 /// A number of the reference of each lane.
@@ -398,7 +398,7 @@ mod tests {
         let moment = Moment { t: 0.7, gain: 20.0, sample: None };
         let mut group = GroupMembers { arms: &mut arms, systems: &mut systems, level };
         let is_clear = lanes.evaluate(&mut group, moment, &x, [&mut f, &mut g]);
-        let Found { error, deviation, bound, smallest_pivot } = lanes.found;
+        let GroupResult { error, deviation, bound, smallest_pivot } = lanes.found;
         let found = error.into_iter().chain(deviation).chain([bound, smallest_pivot]);
         let found = found.flat_map(|lanes| lanes.as_ref().to_vec());
         (is_clear, found.chain(f).chain(g).collect())

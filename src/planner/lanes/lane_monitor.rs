@@ -1,6 +1,6 @@
 //! The limits and figures of arms side by side, in the form in which most samples are done with at a glance.
 
-use super::found::Found;
+use super::group_result::GroupResult;
 use super::sample::Sample;
 use super::transpose::Transpose;
 use crate::math::{Kernel, LaneArray, Lanes};
@@ -115,16 +115,16 @@ impl<A: LaneArray> LaneMonitor<A> {
     }
 }
 
-/// A look at a sample in which all arms are on their paths.
-pub(in crate::planner) struct Look<'a, A> {
+/// An observation of a sample in which no arm needs a closer look.
+pub(in crate::planner) struct Observation<'a, A> {
     pub(in crate::planner) monitor: &'a mut LaneMonitor<A>,
     pub(in crate::planner) transpose: &'a mut Transpose<A>,
-    pub(in crate::planner) found: &'a Found<A>,
+    pub(in crate::planner) found: &'a GroupResult<A>,
     pub(in crate::planner) t: f64,
     pub(in crate::planner) sample: &'a Sample<'a>,
 }
 
-impl<A: LaneArray> Kernel for Look<'_, A> {
+impl<A: LaneArray> Kernel for Observation<'_, A> {
     /// Whether no joint limit can have been crossed.
     type Output = bool;
 
@@ -147,7 +147,7 @@ impl<A: LaneArray> Kernel for Look<'_, A> {
 }
 
 #[inline(always)]
-fn note_extremes<S: Simd, A: LaneArray>(simd: S, extremes: &mut Extremes<A>, found: &Found<A>, t: f64) {
+fn note_extremes<S: Simd, A: LaneArray>(simd: S, extremes: &mut Extremes<A>, found: &GroupResult<A>, t: f64) {
     let load = |array: &A| <A::Vector<S> as Lanes>::load(simd, array);
     let raise = |extreme: &mut A, value: A::Vector<S>| value.greatest(load(extreme)).store(extreme);
     let [position, orientation] = [load(&found.deviation[0]), load(&found.deviation[1])];

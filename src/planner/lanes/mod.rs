@@ -4,7 +4,7 @@
 //! Laws and tasks of other kinds never come here, and adding one needs nothing of it.
 
 mod arm_group;
-mod found;
+mod group_result;
 mod lane_group;
 mod lane_monitor;
 mod sample;

@@ -1,6 +1,6 @@
 //! Where arms side by side can be read arm by arm: their states are kept joint by joint.
 
-use super::found::Found;
+use super::group_result::GroupResult;
 use super::sample::Sample;
 use crate::math::{Kernel, LaneArray};
 use crate::planner::system::ArmState;
@@ -23,7 +23,12 @@ impl<A: LaneArray> Transpose<A> {
 
     /// Writes down what was found of a sample.
     #[inline(always)]
-    pub(in crate::planner) fn write<S: Simd>(&mut self, simd: S, sample: &Sample<'_>, found: &Found<A>) {
+    pub(in crate::planner) fn write<S: Simd>(
+        &mut self,
+        simd: S,
+        sample: &Sample<'_>,
+        found: &GroupResult<A>,
+    ) {
         let joints = |reals| &A::arrays(reals)[..self.joints];
         A::write_lanes(simd, joints(sample.positions), &mut self.positions);
         A::write_lanes(simd, joints(sample.velocities), &mut self.velocities);
@@ -51,7 +56,7 @@ fn entries<A: LaneArray>(lanes: &[A], lane: usize, count: usize) -> &[f64] {
 /// Transposes a sample; see [`Transpose::write`].
 pub(in crate::planner) struct Transposition<'a, A> {
     pub(in crate::planner) transpose: &'a mut Transpose<A>,
-    pub(in crate::planner) found: &'a Found<A>,
+    pub(in crate::planner) found: &'a GroupResult<A>,
     pub(in crate::planner) sample: &'a Sample<'a>,
 }
 
