@@ -30,7 +30,8 @@ struct Loop {
     contains: Box<dyn Fn(f64) -> bool>,
     /// The range as text.
     range: String,
-    optimum: Option<f64>,
+    /// The best step, which takes a search to find.
+    optimum: fn(&Formula) -> Option<f64>,
 }
 
 impl Loop {
@@ -43,7 +44,7 @@ impl Loop {
                 Self {
                     sum: sum(&formula.gamma_sum()),
                     range: range.to_string(),
-                    optimum: formula.optimum().map(|optimum| optimum.h),
+                    optimum: |formula| formula.optimum().map(|optimum| optimum.h),
                     contains: Box::new(move |h| range.contains(h)),
                 }
             }
@@ -53,7 +54,7 @@ impl Loop {
                 Self {
                     sum: sum(&pair.gamma_sum()),
                     range: range.as_ref().map_or_else(|| "(none)".to_owned(), ToString::to_string),
-                    optimum: pair.optimum().map(|optimum| optimum.h),
+                    optimum: |formula| formula.without_split().optimum().map(|optimum| optimum.h),
                     contains: Box::new(move |h| range.as_ref().is_some_and(|range| range.contains(h))),
                 }
             }
@@ -81,7 +82,10 @@ pub(super) fn feedback_step(
             check_feedback("gain", gain)?;
             sigma * gain * gamma_sum
         }
-        None => loops.first().and_then(|first| Some(first.optimum? * gamma_sum / first.sum)).unwrap_or(0.0),
+        None => loops
+            .first()
+            .and_then(|first| Some((first.optimum)(formula)? * gamma_sum / first.sum))
+            .unwrap_or(0.0),
     };
     check_feedback("step h", h)?;
     let gain = h / (sigma * gamma_sum);
