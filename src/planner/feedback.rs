@@ -1,6 +1,7 @@
 use super::PlannerError;
-use crate::formula::Formula;
+use crate::formula::{FeedbackRange, Formula};
 use crate::law::LinearityKind;
+use crate::math::Rational;
 use num_traits::ToPrimitive;
 
 /// How strongly the task error is fed back.
@@ -27,9 +28,7 @@ pub(super) struct FeedbackStep {
 struct Loop {
     /// The sum of the coefficients: `h = sigma k sum`.
     sum: f64,
-    contains: Box<dyn Fn(f64) -> bool>,
-    /// The range as text.
-    range: String,
+    range: Option<FeedbackRange>,
     /// The best step, which takes a search to find.
     optimum: fn(&Formula) -> Option<f64>,
 }
@@ -37,25 +36,19 @@ struct Loop {
 impl Loop {
     /// Split laws are fed back by `gamma`, in the range of the whole row; all others by `beta`, in that of `(alpha, beta)`.
     fn of(formula: &Formula, kind: LinearityKind) -> Self {
-        let sum = |sum: &crate::math::Rational| sum.to_f64().unwrap_or(f64::NAN);
+        let real = |sum: &Rational| sum.to_f64().unwrap_or(f64::NAN);
         match kind {
-            LinearityKind::Split => {
-                let range = formula.feedback_range().clone();
-                Self {
-                    sum: sum(&formula.gamma_sum()),
-                    range: range.to_string(),
-                    optimum: |formula| formula.optimum().map(|optimum| optimum.h),
-                    contains: Box::new(move |h| range.contains(h)),
-                }
-            }
+            LinearityKind::Split => Self {
+                sum: real(&formula.gamma_sum()),
+                range: Some(formula.feedback_range().clone()),
+                optimum: |formula| formula.optimum().map(|optimum| optimum.h),
+            },
             LinearityKind::Total => {
                 let pair = formula.without_split();
-                let range = pair.feedback_range().cloned();
                 Self {
-                    sum: sum(&pair.gamma_sum()),
-                    range: range.as_ref().map_or_else(|| "(none)".to_owned(), ToString::to_string),
+                    sum: real(&pair.gamma_sum()),
+                    range: pair.feedback_range().cloned(),
                     optimum: |formula| formula.without_split().optimum().map(|optimum| optimum.h),
-                    contains: Box::new(move |h| range.as_ref().is_some_and(|range| range.contains(h))),
                 }
             }
         }
@@ -97,11 +90,12 @@ pub(super) fn feedback_step(
     for own in &loops {
         // The same gain is another step for other coefficients.
         let h = if own.sum == gamma_sum { h } else { sigma * gain * own.sum };
-        if (own.contains)(h) {
+        if own.range.as_ref().is_some_and(|range| range.contains(h)) {
             continue;
         }
         is_stable = false;
-        let (id, range) = (formula.id().to_owned(), own.range.clone());
+        let range = own.range.as_ref().map_or_else(|| "(none)".to_owned(), ToString::to_string);
+        let id = formula.id().to_owned();
         if !allow_unstable {
             return Err(PlannerError::StepSizeOutsideRange { h, formula: id, range });
         }
