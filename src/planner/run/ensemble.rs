@@ -257,7 +257,9 @@ impl Ensemble {
     fn write_down(&self, run: usize, record: &mut Record) {
         let run = &self.runs[run];
         record.write_arms(run.arms.clone().map(|arm| self.field.arm(arm)));
-        record.write_tasks(self.field.systems.iter().filter(|system| run.has(system)));
+        if record.has_tasks() {
+            record.write_tasks(self.field.systems.iter().filter(|system| run.has(system)));
+        }
     }
 
     /// Runs all plans to their ends, telling `progress` after every step how far the first is.

@@ -50,6 +50,11 @@ impl Record {
         }
     }
 
+    /// Whether there are tasks beside those of the arms.
+    pub(in crate::planner) fn has_tasks(&self) -> bool {
+        !self.tasks.is_empty()
+    }
+
     /// Adds a sample of the tasks beside those of the arms.
     pub(in crate::planner) fn write_tasks<'a>(&mut self, systems: impl Iterator<Item = &'a System>) {
         let added = systems.flat_map(System::added_tasks);
