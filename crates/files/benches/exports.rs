@@ -28,7 +28,8 @@ fn trajectory(stage: &Stage) -> Trajectory {
         let end = velocities.len() - joints.len();
         velocities[end..].fill(0.0);
         let errors = times.iter().map(|t| 1e-9 * t.cos().abs()).collect();
-        ArmTrajectory { name: name.clone(), joints, positions, velocities, errors }
+        let (name, accelerations) = (name.clone(), Vec::new());
+        ArmTrajectory { name, joints, positions, velocities, accelerations, errors }
     };
     let arms = stage.arms.iter().map(|staged| {
         arm(&staged.name, staged.chain.joints().iter().map(|joint| joint.name.clone()).collect())

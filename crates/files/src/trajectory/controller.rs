@@ -83,7 +83,8 @@ impl Trajectory {
     /// `v T / 2` in the time `T` that all joints share. A controller's cubic between the two samples is that motion.
     ///
     /// `T` is as long as the joints need when none decelerates harder than the fastest it accelerated before, a sampling gap at
-    /// least and a second at most. Task errors are left out, since the stop follows no path. An end at rest stays as it is,
+    /// least and a second at most. Task errors are left out, since the stop follows no path,
+    /// and accelerations, with which the controller's spline would be another. An end at rest stays as it is,
     /// and so does a trajectory without velocities.
     ///
     /// # Errors
@@ -98,6 +99,8 @@ impl Trajectory {
         stopped.times.push(self.times[last] + duration);
         for (arm, before) in stopped.arms.iter_mut().zip(&self.arms) {
             arm.errors.clear();
+            // With accelerations a controller's spline would be a quintic, and another motion than this cubic.
+            arm.accelerations.clear();
             let still = vec![0.0; arm.joints.len()];
             let velocity = before.velocity(last).unwrap_or(&still);
             let end = before.position(last).iter().zip(velocity).map(|(q, v)| q + v * duration / 2.0);

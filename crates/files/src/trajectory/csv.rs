@@ -10,8 +10,8 @@ use super::read::{Source, TrajectoryReader, not_later};
 use super::{Recording, Trajectory, TrajectoryFormat, csv_metadata};
 
 /// A row per sample: `t`, then of each arm `ARM.JOINT` [rad or m] joint by joint, `ARM.JOINT.velocity` [rad/s or m/s],
-/// and `ARM.error`, the norm of its task error; what is not known has no columns. 17 significant digits, so that every
-/// value reads back as it was. What made it stands beside it: [`CsvMetadata`](super::CsvMetadata).
+/// `ARM.JOINT.acceleration` [rad/s^2 or m/s^2], and `ARM.error`, the norm of its task error; what is not known has no
+/// columns. 17 significant digits, so that every value reads back as it was. What made it stands beside it: [`CsvMetadata`](super::CsvMetadata).
 ///
 /// Read are such files and those of others: columns in any order, byte order marks, lines that end in CR LF, quoted
 /// fields, a header behind `#`, and plain names of joints where there is one arm, which is then called `arm`.
@@ -104,8 +104,9 @@ impl Samples {
             let joint = |arm: usize, joint: usize| layout.arms[arm].joints[joint].clone();
             match *role {
                 Role::Time => "time".to_owned(),
-                Role::Position { arm, joint: place } => format!("position of `{}`", joint(arm, place)),
-                Role::Velocity { arm, joint: place } => format!("velocity of `{}`", joint(arm, place)),
+                Role::Joint { quantity, arm, joint: place } => {
+                    format!("{} of `{}`", quantity.name(), joint(arm, place))
+                }
                 Role::Error { arm } => format!("error of `{}`", layout.arms[arm].name),
             }
         };
@@ -124,21 +125,15 @@ impl Samples {
         }
         let Layout { roles, arms } = &mut self.layout;
         let row = self.times.len();
-        for arm in arms.iter_mut() {
-            arm.positions.resize((row + 1) * arm.joints.len(), 0.0);
-        }
         for ((field, role), name) in fields.iter().zip(roles).zip(&self.names) {
             let value = number(field, name)?;
             match *role {
                 Role::Time => push_time(&mut self.times, value, field.at)?,
-                Role::Position { arm, joint } => {
-                    let arm = &mut arms[arm];
-                    arm.positions[row * arm.joints.len() + joint] = value;
-                }
-                Role::Velocity { arm, joint } => {
-                    let arm = &mut arms[arm];
-                    arm.velocities.resize((row + 1) * arm.joints.len(), 0.0);
-                    arm.velocities[row * arm.joints.len() + joint] = value;
+                Role::Joint { quantity, arm, joint } => {
+                    let joints = arms[arm].joints.len();
+                    let values = arms[arm].of_mut(quantity);
+                    values.resize((row + 1) * joints, 0.0);
+                    values[row * joints + joint] = value;
                 }
                 Role::Error { arm } => arms[arm].errors.push(value),
             }

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::ArmTrajectory;
 use super::error::Problem;
+use super::quantity::Quantity;
 
 /// The name of the arm where columns name none.
 const ONLY_ARM: &str = "arm";
@@ -14,8 +15,7 @@ const TIMES: [&str; 3] = ["t", "time", "timestamp"];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     Time,
-    Position { arm: usize, joint: usize },
-    Velocity { arm: usize, joint: usize },
+    Joint { quantity: Quantity, arm: usize, joint: usize },
     Error { arm: usize },
 }
 
@@ -29,14 +29,13 @@ pub(super) struct Layout {
 /// A column's name, taken apart.
 enum Part<'n> {
     Time,
-    Position(&'n str),
-    Velocity(&'n str),
+    Joint(Quantity, &'n str),
     Error(&'n str),
 }
 
 impl Layout {
     /// Returns what columns of these names hold: `t`; of every arm `ARM.JOINT`, `ARM.JOINT.velocity` and `ARM.error`; or
-    /// plain names of the joints of one arm, `JOINT` and `JOINT.velocity`. `place` says at which byte a column's name
+    /// plain names of the joints of one arm, `JOINT` and `JOINT.velocity`; accelerations as velocities. `place` says at which byte a column's name
     /// stands, where it does.
     pub(super) fn of(names: &[&str], place: impl Fn(usize) -> Option<usize>) -> Result<Self, Problem> {
         let refuse = |column: usize, message: String| Problem { message, at: place(column) };
@@ -56,10 +55,12 @@ impl Layout {
             .enumerate()
             .map(|(column, name)| if column == time { Part::Time } else { part(name, &known) })
             .collect();
-        let is_plain = !parts.iter().any(|part| matches!(part, Part::Position(name) if name.contains('.')));
+        let is_plain = !parts
+            .iter()
+            .any(|part| matches!(part, Part::Joint(Quantity::Position, name) if name.contains('.')));
         let mut layout = Self { roles: Vec::new(), arms: Vec::new() };
         for (column, part) in parts.iter().enumerate() {
-            if let Part::Position(name) = part {
+            if let Part::Joint(Quantity::Position, name) = part {
                 layout.add_joint(name, is_plain).map_err(|message| refuse(column, message))?;
             }
         }
@@ -67,7 +68,7 @@ impl Layout {
             let role = layout.role(part, is_plain).map_err(|message| refuse(column, message))?;
             layout.roles.push(role);
         }
-        layout.check_velocities()?;
+        layout.check_complete()?;
         Ok(layout)
     }
 
@@ -86,19 +87,21 @@ impl Layout {
     }
 
     fn role(&self, part: &Part<'_>, is_plain: bool) -> Result<Role, String> {
-        let joint = |name: &str| -> Result<(usize, usize), String> {
+        let joint = |quantity: Quantity, name: &str| -> Result<(usize, usize), String> {
             let (arm, joint) = split(name, is_plain)?;
             let place = self.arm(arm).and_then(|index| {
                 Some((index, self.arms[index].joints.iter().position(|known| known == joint)?))
             });
             place.ok_or_else(|| {
-                format!("there are velocities of `{name}` but no positions; it needs a column `{name}`")
+                let known = quantity.plural();
+                format!("there are {known} of `{name}` but no positions; it needs a column `{name}`")
             })
         };
         Ok(match part {
             Part::Time => Role::Time,
-            Part::Position(name) => joint(name).map(|(arm, joint)| Role::Position { arm, joint })?,
-            Part::Velocity(name) => joint(name).map(|(arm, joint)| Role::Velocity { arm, joint })?,
+            Part::Joint(quantity, name) => {
+                joint(*quantity, name).map(|(arm, joint)| Role::Joint { quantity: *quantity, arm, joint })?
+            }
             Part::Error(arm) => {
                 let name = if is_plain { ONLY_ARM } else { arm };
                 let arm = self.arm(name).ok_or_else(|| format!("no joint of an arm `{arm}` has a column"))?;
@@ -107,15 +110,17 @@ impl Layout {
         })
     }
 
-    /// Velocities are known of all joints of an arm or of none.
-    fn check_velocities(&self) -> Result<(), Problem> {
-        for (index, arm) in self.arms.iter().enumerate() {
-            let known = |place| self.roles.contains(&Role::Velocity { arm: index, joint: place });
-            let has: Vec<bool> = (0..arm.joints.len()).map(known).collect();
-            let missing = has.iter().position(|has| !has).filter(|_| has.contains(&true));
-            if let Some(place) = missing {
-                let joint = &arm.joints[place];
-                return Err(Problem::at(0, format!("some joints have velocities and `{joint}` has none")));
+    /// A quantity is known of all joints of an arm or of none.
+    fn check_complete(&self) -> Result<(), Problem> {
+        for quantity in Quantity::ALL {
+            for (index, arm) in self.arms.iter().enumerate() {
+                let known = |joint| self.roles.contains(&Role::Joint { quantity, arm: index, joint });
+                let has: Vec<bool> = (0..arm.joints.len()).map(known).collect();
+                let missing = has.iter().position(|has| !has).filter(|_| has.contains(&true));
+                if let Some(place) = missing {
+                    let (joint, known) = (&arm.joints[place], quantity.plural());
+                    return Err(Problem::at(0, format!("some joints have {known} and `{joint}` has none")));
+                }
             }
         }
         Ok(())
@@ -127,14 +132,18 @@ fn time_column(names: &[&str]) -> Option<usize> {
 }
 
 fn part<'n>(name: &'n str, known: &HashSet<&str>) -> Part<'n> {
-    if let Some(joint) = name.strip_suffix(".velocity") {
-        return Part::Velocity(joint);
+    let rates = [Quantity::Velocity, Quantity::Acceleration];
+    for quantity in rates {
+        if let Some(joint) = name.strip_suffix(quantity.suffix()) {
+            return Part::Joint(quantity, joint);
+        }
     }
     let is_error = name == "error" || name.strip_suffix(".error").is_some();
-    if is_error && !known.contains(format!("{name}.velocity").as_str()) {
+    let has_rate = |quantity: Quantity| known.contains(format!("{name}{}", quantity.suffix()).as_str());
+    if is_error && !rates.into_iter().any(has_rate) {
         return Part::Error(name.strip_suffix(".error").unwrap_or_default());
     }
-    Part::Position(name)
+    Part::Joint(Quantity::Position, name)
 }
 
 /// Returns the arm and the joint that a name means. Arms' names have no dot in them, joints' may.

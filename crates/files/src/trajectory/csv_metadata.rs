@@ -57,6 +57,8 @@ fn column(index: usize, title: &str) -> Value {
         "time [s]"
     } else if title.strip_suffix(".velocity").is_some() {
         "joint velocity [rad/s or m/s]"
+    } else if title.strip_suffix(".acceleration").is_some() {
+        "joint acceleration [rad/s^2 or m/s^2]"
     } else if title.strip_suffix(".error").is_some() {
         "norm of the task error [m, rad]"
     } else {

@@ -1,5 +1,6 @@
 //! Joints that are commanded together: those of all arms of one machine, each once.
 
+use super::quantity::Quantity;
 use super::{ArmTrajectory, Machine, Recording};
 
 /// The arms of one machine as one list of joints; an arm that no machine is known of stands alone.
@@ -25,9 +26,9 @@ impl Column<'_> {
         self.arm.position(sample)[self.place]
     }
 
-    /// The velocity [rad/s or m/s] at a sample, where it is known.
-    pub(super) fn velocity(&self, sample: usize) -> Option<f64> {
-        self.arm.velocity(sample).map(|velocity| velocity[self.place])
+    /// A quantity at a sample, where it is known.
+    fn value(&self, quantity: Quantity, sample: usize) -> Option<f64> {
+        self.arm.of(quantity).get(sample * self.arm.joints.len() + self.place).copied()
     }
 }
 
@@ -47,15 +48,15 @@ impl<'a> Group<'a> {
         groups.filter(|group| !group.columns.is_empty()).collect()
     }
 
-    /// Whether the velocities of all joints are known.
-    pub(super) fn has_velocities(&self) -> bool {
-        self.columns.iter().all(|column| !column.arm.velocities.is_empty())
+    /// Whether the quantity is known of all joints.
+    pub(super) fn has(&self, quantity: Quantity) -> bool {
+        self.columns.iter().all(|column| !column.arm.of(quantity).is_empty())
     }
 
-    /// The velocities [rad/s or m/s] of all joints at a sample; none where one is unknown.
-    pub(super) fn velocities(&self, sample: usize) -> impl Iterator<Item = f64> + '_ {
-        let known = self.has_velocities();
-        self.columns.iter().filter(move |_| known).filter_map(move |column| column.velocity(sample))
+    /// The quantity of all joints at a sample; nothing where it is unknown of one.
+    pub(super) fn values(&self, quantity: Quantity, sample: usize) -> impl Iterator<Item = f64> + '_ {
+        let known = self.has(quantity);
+        self.columns.iter().filter(move |_| known).filter_map(move |column| column.value(quantity, sample))
     }
 
     /// The positions [rad or m] of all joints at a sample.

@@ -14,6 +14,7 @@ use super::controller::{Refusal, check_messages};
 use super::error::Problem;
 use super::group::{Group, ros_name};
 use super::mcap_records::{Channel, Contents, MAGIC};
+use super::quantity::Quantity;
 use super::read::{Source, TrajectoryReader};
 use super::ros2_schema::schema;
 use super::ros2_yaml::start_of;
@@ -239,9 +240,9 @@ impl<W: Write> Bag<W> {
         names.for_each(|name| self.cdr.text(name));
         self.cdr.count(count);
         self.cdr.reals(group.positions(sample).chain(resting.iter().map(|&(_, position)| position)));
-        if group.has_velocities() {
+        if group.has(Quantity::Velocity) {
             self.cdr.count(count);
-            self.cdr.reals(group.velocities(sample).chain(resting.iter().map(|_| 0.0)));
+            self.cdr.reals(group.values(Quantity::Velocity, sample).chain(resting.iter().map(|_| 0.0)));
         } else {
             self.cdr.count(0);
         }
@@ -269,13 +270,15 @@ impl<W: Write> Bag<W> {
         self.cdr.header(Stamp::ZERO, "");
         self.cdr.texts(group.columns.iter().map(|column| column.joint));
         self.cdr.count(trajectory.samples());
-        let velocities = if group.has_velocities() { group.columns.len() } else { 0 };
+        let count = |quantity| if group.has(quantity) { group.columns.len() } else { 0 };
+        let [velocities, accelerations] = [Quantity::Velocity, Quantity::Acceleration].map(count);
         for sample in 0..trajectory.samples() {
             self.cdr.count(group.columns.len());
             self.cdr.reals(group.positions(sample));
             self.cdr.count(velocities);
-            self.cdr.reals(group.velocities(sample));
-            self.cdr.count(0);
+            self.cdr.reals(group.values(Quantity::Velocity, sample));
+            self.cdr.count(accelerations);
+            self.cdr.reals(group.values(Quantity::Acceleration, sample));
             self.cdr.count(0);
             self.cdr.stamp(stamp(trajectory, sample));
         }
@@ -438,10 +441,10 @@ impl Series {
         cdr.header()?;
         series.arm.joints = cdr.texts()?;
         for _ in 0..cdr.count()? {
-            let (positions, velocities) = (cdr.list()?, cdr.list()?);
-            let _accelerations_and_efforts = [cdr.list()?, cdr.list()?];
+            let (positions, rates) = (cdr.list()?, [cdr.list()?, cdr.list()?]);
+            let _efforts = cdr.list()?;
             series.times.push(cdr.stamp()?.seconds());
-            series.push(positions, velocities)?;
+            series.push(positions, rates)?;
         }
         Ok(series)
     }
@@ -458,11 +461,11 @@ impl Series {
         let has_stamp = stamp != Stamp::ZERO || log_time == 0;
         self.times.push(if has_stamp { stamp.seconds() } else { log_time as f64 / 1e9 });
         let (positions, velocities) = (cdr.list()?, cdr.list()?);
-        self.push(positions, velocities)
+        self.push(positions, [velocities, Vec::new()])
     }
 
-    /// Adds a sample, of which all have velocities or none.
-    fn push(&mut self, positions: Vec<f64>, velocities: Vec<f64>) -> Result<(), Problem> {
+    /// Adds a sample, of which all have velocities or none, and accelerations likewise.
+    fn push(&mut self, positions: Vec<f64>, rates: [Vec<f64>; 2]) -> Result<(), Problem> {
         let (samples, topic, joints) = (self.times.len(), &self.topic, self.arm.joints.len());
         if positions.len() != joints {
             let got = positions.len();
@@ -470,13 +473,16 @@ impl Series {
                 "sample {samples} of {topic} has {got} positions for {joints} joints"
             )));
         }
-        let knows_velocities = samples == 1 || !self.arm.velocities.is_empty();
-        if velocities.len() == joints && knows_velocities {
-            self.arm.velocities.extend(velocities);
-        } else if !self.arm.velocities.is_empty() {
-            return Err(Problem::new(format!(
-                "sample {samples} of {topic} has no velocities although others have"
-            )));
+        for (quantity, rates) in [Quantity::Velocity, Quantity::Acceleration].into_iter().zip(rates) {
+            let known = self.arm.of_mut(quantity);
+            if rates.len() == joints && (samples == 1 || !known.is_empty()) {
+                known.extend(rates);
+            } else if !known.is_empty() {
+                let missing = quantity.plural();
+                return Err(Problem::new(format!(
+                    "sample {samples} of {topic} has no {missing} although others have"
+                )));
+            }
         }
         self.arm.positions.extend(positions);
         Ok(())

@@ -26,6 +26,7 @@ mod npz;
 mod parquet;
 #[cfg(not(feature = "parquet"))]
 mod parquet_absent;
+mod quantity;
 mod read;
 mod ros2_schema;
 mod ros2_yaml;

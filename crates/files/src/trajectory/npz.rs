@@ -11,10 +11,11 @@ use super::read::{Source, TrajectoryReader};
 use super::{About, ArmTrajectory, Recording, Trajectory, TrajectoryFormat};
 
 /// Arrays as `numpy.load` reads them: `t` \[s\]; `arms`, the arms' names; of every arm `ARM.joints`, `ARM.positions`
-/// (samples x joints, rad or m), and where they are known `ARM.velocities` and `ARM.errors`; `about`, pairs of keys and
+/// (samples x joints, rad or m), and where they are known `ARM.velocities`, `ARM.accelerations` and `ARM.errors`; `about`, pairs of keys and
 /// values that say what made it. Nothing is compressed, and the same trajectory gives the same bytes.
 ///
-/// Of others are read files with `t` (or `time`), `positions` (or `q`), `joints`, and perhaps `velocities`: one arm.
+/// Of others are read files with `t` (or `time`), `positions` (or `q`), `joints`, and perhaps `velocities` (or `qd`) and
+/// `accelerations` (or `qdd`): one arm.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Npz;
 
@@ -32,9 +33,8 @@ impl TrajectoryFormat for Npz {
         numbers("t", &trajectory.times, None)?;
         for arm in &trajectory.arms {
             let (name, joints) = (&arm.name, Some(arm.joints.len()));
-            numbers(&format!("{name}.positions"), &arm.positions, joints)?;
-            if !arm.velocities.is_empty() {
-                numbers(&format!("{name}.velocities"), &arm.velocities, joints)?;
+            for (quantity, values) in arm.known() {
+                numbers(&format!("{name}.{}", quantity.plural()), values, joints)?;
             }
             if !arm.errors.is_empty() {
                 numbers(&format!("{name}.errors"), &arm.errors, None)?;
@@ -126,20 +126,27 @@ impl Arrays<'_> {
 
     fn arm(&mut self, name: &str, samples: usize) -> Result<ArmTrajectory, Problem> {
         let own = |part: &str| format!("{name}.{part}");
-        let names = [own("joints"), own("positions"), own("velocities"), own("errors")];
-        self.arm_of(name, samples, [&[&names[0]], &[&names[1]], &[&names[2]], &[&names[3]]])
+        let names = ["joints", "positions", "velocities", "accelerations", "errors"].map(own);
+        let names = names.each_ref().map(|name| [name.as_str()]);
+        self.arm_of(name, samples, names.each_ref().map(<[&str; 1]>::as_slice))
     }
 
     fn plain_arm(&mut self, samples: usize) -> Result<ArmTrajectory, Problem> {
         self.arm_of(
             "arm",
             samples,
-            [&["joints", "joint_names"], &["positions", "q"], &["velocities", "qd"], &["errors"]],
+            [
+                &["joints", "joint_names"],
+                &["positions", "q"],
+                &["velocities", "qd"],
+                &["accelerations", "qdd"],
+                &["errors"],
+            ],
         )
     }
 
-    fn arm_of(&mut self, name: &str, samples: usize, keys: [&[&str]; 4]) -> Result<ArmTrajectory, Problem> {
-        let [joints, positions, velocities, errors] = keys;
+    fn arm_of(&mut self, name: &str, samples: usize, keys: [&[&str]; 5]) -> Result<ArmTrajectory, Problem> {
+        let [joints, positions, velocities, accelerations, errors] = keys;
         let joints = self.first(joints)?.texts(joints[0])?;
         let shape = [samples, joints.len()];
         let positions = self.first(positions)?.numbers(positions[0], &shape)?;
@@ -152,8 +159,9 @@ impl Arrays<'_> {
             Ok(Vec::new())
         };
         let velocities = known(velocities, &shape)?;
+        let accelerations = known(accelerations, &shape)?;
         let errors = known(errors, &[samples])?;
-        Ok(ArmTrajectory { name: name.to_owned(), joints, positions, velocities, errors })
+        Ok(ArmTrajectory { name: name.to_owned(), joints, positions, velocities, accelerations, errors })
     }
 }
 

@@ -81,8 +81,8 @@ impl<'a> Column<'a> {
         let mut columns: Vec<Self> = all(&trajectory.times, 1).collect();
         for arm in &trajectory.arms {
             let joints = arm.joints.len();
-            let positions = all(&arm.positions, joints);
-            columns.extend(positions.chain(known(&arm.velocities, joints)).chain(known(&arm.errors, 1)));
+            columns.extend(arm.known().flat_map(|(_, values)| all(values, joints)));
+            columns.extend(known(&arm.errors, 1));
         }
         columns
     }
@@ -265,22 +265,16 @@ fn numbers<T: DataType<T: Into<f64>>>(
 fn assembled(layout: Layout, columns: Vec<Vec<f64>>, about: Option<About>) -> Trajectory {
     let Layout { roles, mut arms } = layout;
     let samples = columns.first().map_or(0, Vec::len);
-    for arm in &mut arms {
-        arm.positions.resize(samples * arm.joints.len(), 0.0);
-    }
     let mut times = Vec::new();
     for (column, role) in columns.into_iter().zip(roles) {
         match role {
             Role::Time => times = column,
             Role::Error { arm } => arms[arm].errors = column,
-            Role::Position { arm, joint } => {
-                let arm = &mut arms[arm];
-                spread(&column, joint, arm.joints.len(), &mut arm.positions);
-            }
-            Role::Velocity { arm, joint } => {
-                let arm = &mut arms[arm];
-                arm.velocities.resize(samples * arm.joints.len(), 0.0);
-                spread(&column, joint, arm.joints.len(), &mut arm.velocities);
+            Role::Joint { quantity, arm, joint } => {
+                let joints = arms[arm].joints.len();
+                let values = arms[arm].of_mut(quantity);
+                values.resize(samples * joints, 0.0);
+                spread(&column, joint, joints, values);
             }
         }
     }

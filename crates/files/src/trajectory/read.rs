@@ -10,7 +10,8 @@ use super::Parquet;
 use super::error::{Problem, TrajectoryError, TrajectoryErrorKind};
 #[cfg(not(feature = "parquet"))]
 use super::parquet_absent::ParquetAbsent;
-use super::{Csv, Mcap, Npz, Ros2Yaml, Trajectory};
+use super::quantity::Quantity;
+use super::{ArmTrajectory, Csv, Mcap, Npz, Ros2Yaml, Trajectory};
 
 /// The longest file that is read [bytes].
 const LONGEST: u64 = 4 << 30;
@@ -112,9 +113,12 @@ fn checked(trajectory: Trajectory) -> Result<Trajectory, Problem> {
         let count = trajectory.samples();
         return Err(Problem::new(format!("a trajectory needs two samples at least, here are {count}")));
     }
-    let arms = trajectory.arms.iter();
-    let mut values = arms.flat_map(|arm| arm.positions.iter().chain(&arm.velocities).chain(&arm.errors));
-    if let Some(value) = trajectory.times.iter().chain(values.by_ref()).find(|value| !value.is_finite()) {
+    let not_finite = |values: &[f64]| values.iter().copied().find(|value| !value.is_finite());
+    let of_arm = |arm: &ArmTrajectory| {
+        let quantities = Quantity::ALL.map(|quantity| arm.of(quantity));
+        quantities.into_iter().chain([arm.errors.as_slice()]).find_map(not_finite)
+    };
+    if let Some(value) = not_finite(&trajectory.times).or_else(|| trajectory.arms.iter().find_map(of_arm)) {
         return Err(Problem::new(format!("it holds {value}, which is not a finite number")));
     }
     match trajectory.times.windows(2).position(|pair| pair[1] <= pair[0]) {

@@ -7,6 +7,7 @@ use super::clock::Stamp;
 use super::controller::{Refusal, check_command};
 use super::error::Problem;
 use super::group::Group;
+use super::quantity::Quantity;
 use super::read::{Source, TrajectoryReader};
 use super::yaml::{self, Node};
 use super::{About, ArmTrajectory, Machine, Recording, Trajectory, TrajectoryFormat};
@@ -101,6 +102,11 @@ pub(super) fn start_of<'a>(group: &Group<'a>) -> Vec<(&'a str, f64)> {
     moved.chain(resting).collect()
 }
 
+/// What points have beside positions.
+fn rates() -> impl Iterator<Item = Quantity> {
+    [Quantity::Velocity, Quantity::Acceleration].into_iter()
+}
+
 fn write_joint_trajectory(
     trajectory: &Trajectory,
     group: &Group<'_>,
@@ -117,9 +123,11 @@ fn write_joint_trajectory(
         text.clear();
         let _ = write!(text, "{indent}- positions: ");
         yaml::push_numbers(&mut text, group.positions(sample));
-        if group.has_velocities() {
-            let _ = write!(text, "\n{indent}  velocities: ");
-            yaml::push_numbers(&mut text, group.velocities(sample));
+        for quantity in rates() {
+            if group.has(quantity) {
+                let _ = write!(text, "\n{indent}  {}: ", quantity.plural());
+                yaml::push_numbers(&mut text, group.values(quantity, sample));
+            }
         }
         let Stamp { sec, nanosec } = Stamp::of(time - trajectory.times[0]).unwrap_or(Stamp::ZERO);
         let _ = write!(text, "\n{indent}  time_from_start: {{sec: {sec}, nanosec: {nanosec}}}");
@@ -181,8 +189,10 @@ fn trajectory_of(message: &Node<'_>, name: &str) -> Result<Trajectory, Problem> 
     let mut arm = ArmTrajectory { joints, ..ArmTrajectory::empty(name) };
     let mut times: Vec<f64> = Vec::new();
     let points = message.need("points")?.list("a list of points")?;
-    let has_velocities =
-        points.first().and_then(|point| point.get("velocities")).is_some_and(|list| !list.is_empty());
+    let is_known = |quantity: &Quantity| {
+        points.first().and_then(|point| point.get(quantity.plural())).is_some_and(|list| !list.is_empty())
+    };
+    let known: Vec<Quantity> = rates().filter(is_known).collect();
     for point in points {
         let span = point.need("time_from_start")?;
         let time = span.need("sec")?.number()? + 0.0;
@@ -193,8 +203,9 @@ fn trajectory_of(message: &Node<'_>, name: &str) -> Result<Trajectory, Problem> 
         }
         times.push(time);
         point.need("positions")?.numbers(arm.joints.len(), &mut arm.positions)?;
-        if has_velocities {
-            point.need("velocities")?.numbers(arm.joints.len(), &mut arm.velocities)?;
+        for &quantity in &known {
+            let joints = arm.joints.len();
+            point.need(quantity.plural())?.numbers(joints, arm.of_mut(quantity))?;
         }
     }
     Ok(Trajectory { about: None, times, arms: vec![arm] })

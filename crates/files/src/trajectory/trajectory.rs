@@ -3,6 +3,7 @@
 use nalgebra::Vector6;
 
 use super::About;
+use super::quantity::Quantity;
 use kinstep::planner::{Arm, ArmPlan, Plan};
 
 /// What the joints of one arm do.
@@ -16,6 +17,8 @@ pub struct ArmTrajectory {
     pub positions: Vec<f64>,
     /// Joint velocities [rad/s or m/s], sample after sample: of a plan the feedforward `J^+ phi'`. Empty where unknown.
     pub velocities: Vec<f64>,
+    /// Joint accelerations [rad/s^2 or m/s^2], sample after sample. Empty where unknown, as of a plan.
+    pub accelerations: Vec<f64>,
     /// The norm of the task error of every sample (m and rad together). Empty where unknown.
     pub errors: Vec<f64>,
 }
@@ -23,8 +26,14 @@ pub struct ArmTrajectory {
 impl ArmTrajectory {
     /// An arm without joints and samples.
     pub(super) fn empty(name: &str) -> Self {
-        let (joints, positions) = (Vec::new(), Vec::new());
-        Self { name: name.to_owned(), joints, positions, velocities: Vec::new(), errors: Vec::new() }
+        Self {
+            name: name.to_owned(),
+            joints: Vec::new(),
+            positions: Vec::new(),
+            velocities: Vec::new(),
+            accelerations: Vec::new(),
+            errors: Vec::new(),
+        }
     }
 
     /// The joint positions [rad or m] of sample `n`.
@@ -58,6 +67,7 @@ impl ArmTrajectory {
             joints: places.iter().map(|&place| self.joints[place].clone()).collect(),
             positions: taken(&self.positions),
             velocities: taken(&self.velocities),
+            accelerations: taken(&self.accelerations),
             errors: self.errors.clone(),
         }
     }
@@ -66,6 +76,34 @@ impl ArmTrajectory {
     pub fn velocity(&self, n: usize) -> Option<&[f64]> {
         let joints = self.joints.len();
         self.velocities.get(n * joints..(n + 1) * joints).filter(|velocity| !velocity.is_empty())
+    }
+
+    /// The joint accelerations [rad/s^2 or m/s^2] of sample `n`, where they are known.
+    pub fn acceleration(&self, n: usize) -> Option<&[f64]> {
+        let joints = self.joints.len();
+        self.accelerations.get(n * joints..(n + 1) * joints).filter(|acceleration| !acceleration.is_empty())
+    }
+
+    /// What is known of all joints: sample after sample, with the quantity that it is of.
+    pub(super) fn known(&self) -> impl Iterator<Item = (Quantity, &[f64])> {
+        let all = Quantity::ALL.into_iter().map(|quantity| (quantity, self.of(quantity)));
+        all.filter(|(quantity, values)| *quantity == Quantity::Position || !values.is_empty())
+    }
+
+    pub(super) fn of(&self, quantity: Quantity) -> &[f64] {
+        match quantity {
+            Quantity::Position => &self.positions,
+            Quantity::Velocity => &self.velocities,
+            Quantity::Acceleration => &self.accelerations,
+        }
+    }
+
+    pub(super) fn of_mut(&mut self, quantity: Quantity) -> &mut Vec<f64> {
+        match quantity {
+            Quantity::Position => &mut self.positions,
+            Quantity::Velocity => &mut self.velocities,
+            Quantity::Acceleration => &mut self.accelerations,
+        }
     }
 
     /// The [task errors](Arm::task_error) (linear \[m\]; angular \[rad\]) of the samples, at `times` \[s\], of an arm with the
@@ -87,6 +125,7 @@ impl From<&ArmPlan> for ArmTrajectory {
             joints: arm.joints.clone(),
             positions: arm.positions.clone(),
             velocities: arm.velocities.clone(),
+            accelerations: Vec::new(),
             errors: arm.errors.iter().map(Vector6::norm).collect(),
         }
     }
@@ -119,13 +158,13 @@ impl Trajectory {
     }
 
     /// The names of the columns of a table of the samples: `t`, then of each arm `ARM.JOINT` joint by joint,
-    /// `ARM.JOINT.velocity`, and `ARM.error`; what is not known has no columns.
+    /// `ARM.JOINT.velocity`, `ARM.JOINT.acceleration`, and `ARM.error`; what is not known has no columns.
     pub fn columns(&self) -> Vec<String> {
         let mut names = vec!["t".to_owned()];
         for arm in &self.arms {
-            for (suffix, known) in [("", true), (".velocity", !arm.velocities.is_empty())] {
-                let joints = arm.joints.iter().filter(|_| known);
-                names.extend(joints.map(|joint| format!("{}.{joint}{suffix}", arm.name)));
+            for (quantity, _) in arm.known() {
+                let suffix = quantity.suffix();
+                names.extend(arm.joints.iter().map(|joint| format!("{}.{joint}{suffix}", arm.name)));
             }
             if !arm.errors.is_empty() {
                 names.push(format!("{}.error", arm.name));
@@ -141,7 +180,9 @@ impl Trajectory {
     pub fn values(&self, n: usize) -> impl Iterator<Item = f64> + '_ {
         self.arms.iter().flat_map(move |arm| {
             let velocities = arm.velocity(n).unwrap_or_default();
-            arm.position(n).iter().chain(velocities).chain(arm.errors.get(n)).copied()
+            let accelerations = arm.acceleration(n).unwrap_or_default();
+            let joints = arm.position(n).iter().chain(velocities).chain(accelerations);
+            joints.chain(arm.errors.get(n)).copied()
         })
     }
 }

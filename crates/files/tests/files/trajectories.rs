@@ -30,16 +30,18 @@ pub(crate) fn trajectories() -> impl Strategy<Value = Trajectory> {
 }
 
 fn arm(index: usize, samples: usize) -> impl Strategy<Value = ArmTrajectory> {
-    (1_usize..5, any::<bool>(), any::<bool>(), "[a-z]{1,6}").prop_flat_map(
-        move |(joints, moves, errs, stem)| {
+    (1_usize..5, any::<[bool; 3]>(), "[a-z]{1,6}").prop_flat_map(
+        move |(joints, [moves, rates, errs], stem)| {
             let names = (0..joints).map(|joint| format!("{stem}_joint.\u{e9} {joint}")).collect::<Vec<_>>();
             let values = |known: bool, count: usize| vec(double(), if known { count } else { 0 });
-            (values(true, joints * samples), values(moves, joints * samples), values(errs, samples)).prop_map(
-                move |(positions, velocities, errors)| ArmTrajectory {
+            let all = joints * samples;
+            (values(true, all), values(moves, all), values(rates, all), values(errs, samples)).prop_map(
+                move |(positions, velocities, accelerations, errors)| ArmTrajectory {
                     name: format!("{}-{index}", ["left", "right", "third"][index]),
                     joints: names.clone(),
                     positions,
                     velocities,
+                    accelerations,
                     errors,
                 },
             )
@@ -73,6 +75,7 @@ pub(crate) fn assert_same_bits(one: &Trajectory, other: &Trajectory) {
         assert_eq!((&one.name, &one.joints), (&other.name, &other.joints));
         assert_eq!(bits(&one.positions), bits(&other.positions));
         assert_eq!(bits(&one.velocities), bits(&other.velocities));
+        assert_eq!(bits(&one.accelerations), bits(&other.accelerations));
         assert_eq!(bits(&one.errors), bits(&other.errors));
     }
 }

@@ -153,6 +153,7 @@ fn moving(times: &[f64]) -> Trajectory {
             joints: vec!["joint".to_owned()],
             positions: times.iter().map(|t| t * t / 2.0).collect(),
             velocities: times.to_vec(),
+            accelerations: Vec::new(),
             errors: vec![0.0; times.len()],
         }],
     }
@@ -224,6 +225,7 @@ fn a_recording_has_the_robots_that_move() {
         positions: (0..2 * joints.len()).map(|n| 0.01 * n as f64).collect(),
         joints,
         velocities: Vec::new(),
+        accelerations: Vec::new(),
         errors: Vec::new(),
     };
     let mut trajectory = Trajectory { about: None, times: vec![0.0, 0.5], arms: vec![arm.clone()] };

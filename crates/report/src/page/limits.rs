@@ -204,6 +204,7 @@ mod tests {
             joints: vec!["j".to_owned()],
             positions: positions.to_vec(),
             velocities: Vec::new(),
+            accelerations: Vec::new(),
             errors: Vec::new(),
         };
         Use::of(&arm, 0, limits, 0.5)
