@@ -16,23 +16,31 @@ pub(super) struct Shares {
     pub(super) absent: Vec<String>,
 }
 
+/// An arm of a scenario, and the joints of its robot that follow its own.
+pub(super) struct Taker {
+    pub(super) arm: Arm,
+    pub(super) followers: Vec<String>,
+}
+
 /// Shares out what was found in a file. What no arm takes is kept only where `keeps_others`.
 ///
 /// An arm takes its joints from what is called after it or else after its machine, or else from the only one that has them
 /// all and is not called after another machine.
 pub(super) fn share_out(
     found: &[ArmTrajectory],
-    arms: Vec<Arm>,
+    takers: Vec<Taker>,
     keeps_others: bool,
 ) -> Result<Shares, Failure> {
+    let (arms, followers): (Vec<Arm>, Vec<Vec<String>>) =
+        takers.into_iter().map(|taker| (taker.arm, taker.followers)).unzip();
     let takes: Vec<Option<usize>> = arms.iter().map(|arm| taken(arm, found, &arms)).collect();
     check_absence(found, &arms, &takes)?;
     let mut others = Vec::new();
     for (place, one) in found.iter().enumerate() {
-        let takers = arms.iter().zip(&takes).filter(|(_, take)| **take == Some(place));
-        let takers: Vec<&Arm> = takers.map(|(arm, _)| arm).collect();
+        let takers = arms.iter().zip(&followers).zip(&takes).filter(|(_, take)| **take == Some(place));
+        let (takers, following): (Vec<&Arm>, Vec<&Vec<String>>) = takers.map(|(taker, _)| taker).unzip();
         match takers.first() {
-            Some(first) => check_takers(one, first, &takers)?,
+            Some(first) => check_takers(one, first, &takers, &following)?,
             None if keeps_others || arms.is_empty() => others.push((one.clone(), None)),
             None => {
                 let hint = suggestion(&one.name, arms.iter().map(Arm::name));
@@ -41,9 +49,9 @@ pub(super) fn share_out(
         }
     }
     let (mut moved, mut absent) = (Vec::new(), Vec::new());
-    for (arm, take) in arms.into_iter().zip(takes) {
+    for ((arm, followers), take) in arms.into_iter().zip(followers).zip(takes) {
         match take {
-            Some(place) => moved.push((part(&found[place], &arm)?, Some(arm))),
+            Some(place) => moved.push((part(&found[place], &arm, &followers)?, Some(arm))),
             None => absent.push(arm.name().to_owned()),
         }
     }
@@ -92,7 +100,12 @@ fn check_absence(found: &[ArmTrajectory], arms: &[Arm], takes: &[Option<usize>])
 }
 
 /// Refuses what would be two machines at once, and joints that none of the arms has.
-fn check_takers(one: &ArmTrajectory, first: &Arm, takers: &[&Arm]) -> Result<(), Failure> {
+fn check_takers(
+    one: &ArmTrajectory,
+    first: &Arm,
+    takers: &[&Arm],
+    followers: &[&Vec<String>],
+) -> Result<(), Failure> {
     if let Some(other) = takers.iter().find(|other| machine(other) != machine(first)) {
         let (name, first, other) = (&one.name, first.name(), other.name());
         return Err(Failure::usage(format!(
@@ -100,7 +113,8 @@ fn check_takers(one: &ArmTrajectory, first: &Arm, takers: &[&Arm]) -> Result<(),
         )));
     }
     let known: Vec<&str> = takers.iter().flat_map(|arm| joints(arm)).collect();
-    match one.joints.iter().find(|joint| !known.contains(&joint.as_str())) {
+    let follows = |joint: &String| followers.iter().any(|followers| followers.contains(joint));
+    match one.joints.iter().find(|joint| !known.contains(&joint.as_str()) && !follows(joint)) {
         Some(joint) => Err(export::unknown_joint(joint, &known, &of_scenario(takers))),
         None => Ok(()),
     }
@@ -113,12 +127,13 @@ fn of_scenario(arms: &[&Arm]) -> String {
     format!("{word} {} of the scenario", names.join(" and "))
 }
 
-/// The joints of an arm, out of what moves them.
-fn part(one: &ArmTrajectory, arm: &Arm) -> Result<ArmTrajectory, Failure> {
-    let joints = joints(arm);
+/// The joints of an arm and those that follow them, out of what moves them.
+fn part(one: &ArmTrajectory, arm: &Arm, followers: &[String]) -> Result<ArmTrajectory, Failure> {
+    let mut joints = joints(arm);
     if let Some(missing) = joints.iter().find(|joint| !one.joints.iter().any(|known| known == *joint)) {
         let message = format!("the trajectory does not move joint `{missing}` of {}", of_scenario(&[arm]));
         return Err(Failure::new(Exit::Robot, message));
     }
+    joints.extend(followers.iter().map(String::as_str));
     Ok(ArmTrajectory { name: arm.name().to_owned(), ..one.with_joints(&joints) })
 }

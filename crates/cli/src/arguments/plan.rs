@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::OutArguments;
+use kinstep_files::scenario::suggestion;
+use kinstep_files::trajectory::Interpolation;
 
 #[derive(Debug, Args)]
 pub(crate) struct PlanArguments {
@@ -100,6 +102,13 @@ impl PictureFormat {
     }
 }
 
+fn interpolation(text: &str) -> Result<Interpolation, String> {
+    let known = Interpolation::ALL.into_iter();
+    known.clone().find(|known| known.name() == text).ok_or_else(|| {
+        format!("there is no interpolation \"{text}\"; {}", suggestion(text, known.map(Interpolation::name)))
+    })
+}
+
 fn time(text: &str) -> Result<f64, String> {
     let time = kinstep::math::evaluate(text).ok().filter(|time| time.is_finite());
     time.ok_or_else(|| format!("\"{text}\" is no time in s"))
@@ -172,6 +181,11 @@ pub(crate) struct CheckArguments {
     /// A scenario whose paths the tips should follow, arm by arm of the same name; its robots are taken unless --robot is given
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,
+
+    /// How a controller moves between samples; unless given what they declare decides: quintic with velocities and
+    /// accelerations, cubic with velocities, linear else
+    #[arg(long, value_name = "linear|cubic|quintic", value_parser = interpolation)]
+    pub(crate) interpolation: Option<Interpolation>,
 
     /// The largest task error that is allowed, in m and rad
     #[arg(long, value_name = "E", default_value_t = 1e-3)]

@@ -45,7 +45,9 @@ pub use csv_metadata::CsvMetadata;
 pub use error::{Problem, TextPlace, TrajectoryError, TrajectoryErrorKind};
 pub use format::{Recording, TrajectoryFormat};
 pub use formats::{Export, ExportFile};
-pub use inspect::{JointFigures, Met, TimeFigures};
+pub use inspect::{
+    Course, Crossing, Disagreement, Interpolation, JointFigures, Jump, Met, Rest, Straying, TimeFigures,
+};
 pub use npz::Npz;
 pub use read::{Source, TrajectoryReader};
 pub use ros2_yaml::{MoveItYaml, Ros2Yaml};

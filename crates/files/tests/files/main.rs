@@ -1,5 +1,6 @@
 //! Trajectories written and read back.
 
+mod inspection;
 mod own_kinds;
 mod trajectories;
 mod trajectory_csv;

@@ -1,0 +1,191 @@
+//! What a trajectory is held against: the robots that move, their limits, and the paths that they should follow.
+
+use std::path::Path;
+
+use super::super::arguments::CheckArguments;
+use super::super::export;
+use super::super::failure::Failure;
+use super::super::share_out::{Shares, Taker, share_out};
+use super::sentences;
+use super::verdict::{ArmChecked, Checked, Clock, PathChecked};
+use kinstep::planner::Arm;
+use kinstep::robot::{Joint, Limits, Robot};
+use kinstep_files::scenario::{ScenarioText, TaskSpec};
+use kinstep_files::trajectory::{
+    ArmTrajectory, Course, Interpolation, Met, Stage, Straying, TimeFigures, Trajectory,
+};
+
+pub(super) struct Against {
+    /// What moves, with the joints that follow.
+    trajectory: Trajectory,
+    /// What is known of its arms, in their order.
+    moved: Vec<Moved>,
+    /// How long the paths take \[s\].
+    duration: Option<f64>,
+    /// The arms of the scenario that are not in the trajectory.
+    absent: Vec<String>,
+    /// The tasks over several tips, which are not checked.
+    unchecked: Vec<String>,
+}
+
+/// One arm that moves.
+struct Moved {
+    /// The limits of its joints, in their order.
+    limits: Vec<Limits>,
+    straying: Vec<Straying>,
+    interpolation: Interpolation,
+    /// The arm whose path it should follow.
+    path: Option<Arm>,
+}
+
+/// What a scenario asks for.
+struct Asked {
+    takers: Vec<Taker>,
+    stage: Stage,
+    duration: Option<f64>,
+    tasks: Vec<String>,
+}
+
+impl Asked {
+    fn nothing() -> Self {
+        Self { takers: Vec::new(), stage: Stage::default(), duration: None, tasks: Vec::new() }
+    }
+
+    fn of(file: &Path) -> Result<Self, Failure> {
+        let text = ScenarioText::read(file)?;
+        let scenario = text.scenario()?;
+        let stage = scenario.stage(text.folder()).map_err(|e| text.placed(e))?;
+        let taker = |arm: Arm| {
+            let followers = robot_of(&stage, arm.name()).map_or_else(Vec::new, |robot| followers(&arm, robot));
+            Taker { arm, followers }
+        };
+        let arms = scenario.arms(text.folder()).map_err(|e| text.placed(e))?;
+        let takers = arms.into_iter().map(taker).collect();
+        let name = |task: &TaskSpec| format!("{} of {}", task.kind, task.arms.join(", "));
+        let tasks = scenario.task.iter().map(name).collect();
+        Ok(Self { takers, stage, duration: Some(scenario.duration.0), tasks })
+    }
+}
+
+/// The robot that an arm is part of.
+fn robot_of<'s>(stage: &'s Stage, arm: &str) -> Option<&'s Robot> {
+    Some(&stage.machines[stage.arm(arm)?.machine].robot)
+}
+
+/// The joints of a robot that follow those of an arm.
+fn followers(arm: &Arm, robot: &Robot) -> Vec<String> {
+    let is_own = |index: usize| {
+        let name = &robot.joints()[index].name;
+        arm.chain().joints().iter().any(|joint| joint.name == *name)
+    };
+    let follows = |joint: &&Joint| joint.mimic.is_some_and(|mimic| is_own(mimic.driver));
+    robot.joints().iter().filter(follows).map(|joint| joint.name.clone()).collect()
+}
+
+impl Against {
+    pub(super) fn of(arguments: &CheckArguments) -> Result<Self, Failure> {
+        let (mut trajectory, _) = export::load(&arguments.trajectory, &arguments.robot)?;
+        let own = arguments.trajectory.join("scenario.toml");
+        let folder = arguments.trajectory.is_dir().then_some(own.as_path());
+        let scenario = arguments.scenario.as_deref().or(folder);
+        let Asked { takers, stage, duration, tasks } = scenario.map_or_else(|| Ok(Asked::nothing()), Asked::of)?;
+        let robot = arguments.robot.robot.as_deref();
+        let robot = robot.map(|name| Ok::<_, Failure>((name, export::robot(name)?))).transpose()?;
+        let Shares { moved, absent } = share_out(&trajectory.arms, takers, robot.is_some())?;
+        let (mut arms, mut all) = (Vec::new(), Vec::new());
+        for (arm, path) in moved {
+            let own = path.as_ref().and_then(|path| robot_of(&stage, path.name()));
+            let robot = match (&robot, own) {
+                (Some((name, robot)), _) => {
+                    check_joints(&arm, robot, name)?;
+                    robot
+                }
+                (None, Some(robot)) => robot,
+                (None, None) => {
+                    let message = "name the robot that moves: --robot FILE, or --scenario FILE";
+                    return Err(Failure::usage(message));
+                }
+            };
+            let (arm, straying) = arm.with_followers(robot, &trajectory.times);
+            let limits = |joint: &String| robot.joint(joint).map_or(Limits::UNLIMITED, |joint| joint.limits);
+            let limits = arm.joints.iter().map(limits).collect();
+            let interpolation = interpolation(&arm, arguments.interpolation)?;
+            arms.push(arm);
+            all.push(Moved { limits, straying, interpolation, path });
+        }
+        trajectory.arms = arms;
+        Ok(Self { trajectory, moved: all, duration, absent, unchecked: tasks })
+    }
+
+    pub(super) fn checked(&self, max_error: f64) -> Checked {
+        let times = &self.trajectory.times;
+        let clock = TimeFigures::of(&self.trajectory);
+        let course = self.course();
+        let mut failures = sentences::of_clock(&clock);
+        failures.extend(course.iter().flat_map(|course| sentences::of_course(*course)));
+        let mut arms = Vec::new();
+        for (arm, moved) in self.trajectory.arms.iter().zip(&self.moved) {
+            let figures = arm.inspect(times, &moved.limits, moved.interpolation);
+            let error = course.and_then(|course| moved.worst_error(course, arm, times));
+            failures.extend(sentences::of_arm(&arm.name, &figures, times));
+            failures.extend(moved.straying.iter().map(|straying| sentences::of_follower(&arm.name, straying)));
+            failures.extend(error.and_then(|error| sentences::of_error(&arm.name, error, max_error)));
+            arms.push(ArmChecked::new(&arm.name, &figures, &moved.straying, moved.interpolation, error));
+        }
+        Checked {
+            ok: failures.is_empty(),
+            samples: times.len(),
+            duration: times[times.len() - 1] - times[0],
+            time: Clock::of(&clock),
+            path: course.map(|course| PathChecked::of(&course)),
+            arms,
+            absent: self.absent.clone(),
+            unchecked: self.unchecked.clone(),
+            failures,
+        }
+    }
+
+    /// The part of the paths that is done, where there are paths.
+    fn course(&self) -> Option<Course> {
+        let arms = self.trajectory.arms.iter().zip(&self.moved);
+        let paths: Vec<(ArmTrajectory, &Arm)> =
+            arms.filter_map(|(arm, moved)| moved.path.as_ref().map(|path| (own_joints(arm, path), path))).collect();
+        let duration = self.duration.filter(|_| !paths.is_empty())?;
+        Some(Course::of(&self.trajectory.times, &paths, duration))
+    }
+}
+
+impl Moved {
+    fn worst_error(&self, course: Course, arm: &ArmTrajectory, times: &[f64]) -> Option<Met> {
+        let path = self.path.as_ref()?;
+        Some(course.worst_error(&own_joints(arm, path), path, times, self.interpolation))
+    }
+}
+
+/// An arm's own joints, in the order of its chain.
+fn own_joints(arm: &ArmTrajectory, path: &Arm) -> ArmTrajectory {
+    let joints: Vec<&str> = path.chain().joints().iter().map(|joint| joint.name.as_str()).collect();
+    arm.with_joints(&joints)
+}
+
+/// Refuses joints that a robot does not have.
+fn check_joints(arm: &ArmTrajectory, robot: &Robot, name: &str) -> Result<(), Failure> {
+    let movable = robot.joints().iter().filter(|joint| joint.kind.is_movable());
+    let known: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();
+    arm.joints.iter().try_for_each(|joint| export::check_joint(joint, &known, name))
+}
+
+/// The interpolation that is asked for, or that the samples imply.
+fn interpolation(arm: &ArmTrajectory, asked: Option<Interpolation>) -> Result<Interpolation, Failure> {
+    let implied = Interpolation::of(arm);
+    match asked {
+        Some(asked) if asked > implied => {
+            let (name, implied, asked) = (&arm.name, implied.name(), asked.name());
+            let lacking = if arm.velocities.is_empty() { "velocities" } else { "accelerations" };
+            Err(Failure::usage(format!(
+                "--interpolation {asked}: the samples of `{name}` declare no {lacking}; what they allow is {implied}"
+            )))
+        }
+        _ => Ok(asked.unwrap_or(implied)),
+    }
+}

@@ -1,0 +1,95 @@
+//! Whether a trajectory does the path that it should, from where to where, and how closely.
+
+use super::interpolant::{Interpolation, Knots};
+use super::met::Met;
+use crate::trajectory::ArmTrajectory;
+use kinstep::planner::Arm;
+
+/// Into how many parts a path is taken at least, to look at it between samples that are far apart.
+const PARTS: f64 = 1000.0;
+/// The fraction of a path's duration that may be missing at its ends.
+const MISSING: f64 = 1e-6;
+
+/// The part of a path that a trajectory covers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Course {
+    /// The time stamp \[s\] at which the path begins: zero, or the first stamp.
+    pub origin: f64,
+    /// From where to where in the path's own time the samples go \[s\].
+    pub covered: [f64; 2],
+    /// How long the path takes \[s\].
+    pub duration: f64,
+}
+
+impl Course {
+    /// Returns the part of a path of `duration` \[s\] that the samples cover. Stamps that do not begin at zero are those of the
+    /// path, or else of a clock that was started elsewhere: whichever brings the arms nearer to their paths.
+    ///
+    /// Every arm comes with the one whose path it should follow, and has the same joints in the same order.
+    pub fn of(times: &[f64], arms: &[(ArmTrajectory, &Arm)], duration: f64) -> Self {
+        let (first, last) = (times[0], times[times.len() - 1]);
+        let at = |origin: f64| Self { origin, covered: [first - origin, last - origin], duration };
+        let (own, moved) = (at(0.0), at(first));
+        let worst = |course: Self| -> f64 {
+            let errors = arms.iter().map(|(arm, path)| course.worst_at_samples(arm, path, times));
+            errors.fold(0.0, f64::max)
+        };
+        let is_elsewhere = first < -MISSING * duration || first >= duration;
+        if first == 0.0 || !is_elsewhere && worst(own) <= worst(moved) { own } else { moved }
+    }
+
+    /// Whether the path is done from its beginning to its end.
+    pub fn is_done(&self) -> bool {
+        self.missing().is_empty()
+    }
+
+    /// The parts of the path's time \[s\] that are not covered.
+    pub fn missing(&self) -> Vec<[f64; 2]> {
+        let allowed = MISSING * self.duration;
+        let [begin, end] = self.covered;
+        let before = (begin > allowed).then_some([0.0, begin.min(self.duration)]);
+        let after = (end < self.duration - allowed).then_some([end.max(0.0), self.duration]);
+        before.into_iter().chain(after).collect()
+    }
+
+    /// Returns the worst norm of the task error (m and rad together) while the path lasts, and its time stamp \[s\]: at samples,
+    /// and between those that are further apart than a thousandth of the path.
+    pub fn worst_error(&self, arm: &ArmTrajectory, path: &Arm, times: &[f64], interpolation: Interpolation) -> Met {
+        let joints = 0..arm.joints.len();
+        let knots: Vec<Knots<'_>> = joints.map(|joint| Knots::of(arm, joint, times)).collect();
+        let mut scratch = path.chain().scratch();
+        let mut worst = Met { value: 0.0, t: times[0] };
+        let mut look = |t: f64, q: &[f64]| {
+            let error = path.task_error(t - self.origin, q, &mut scratch).norm();
+            if self.lasts(t) && !(error <= worst.value) {
+                worst = Met { value: error, t };
+            }
+        };
+        for n in 0..times.len() {
+            look(times[n], arm.position(n));
+            let gap = if n + 1 < times.len() { times[n + 1] - times[n] } else { 0.0 };
+            let parts = (gap * PARTS / self.duration).ceil().min(PARTS);
+            if parts > 1.0 {
+                let segments: Vec<_> = knots.iter().map(|knots| knots.segments(interpolation, n)[0]).collect();
+                for part in 1..parts as usize {
+                    let s = part as f64 / parts;
+                    let q: Vec<f64> = segments.iter().map(|segment| segment.value(s)).collect();
+                    look(segments[0].time(s), &q);
+                }
+            }
+        }
+        worst
+    }
+
+    fn lasts(&self, t: f64) -> bool {
+        let allowed = MISSING * self.duration;
+        t - self.origin >= -allowed && t - self.origin <= self.duration + allowed
+    }
+
+    fn worst_at_samples(&self, arm: &ArmTrajectory, path: &Arm, times: &[f64]) -> f64 {
+        let mut scratch = path.chain().scratch();
+        let lasting = times.iter().enumerate().filter(|(_, t)| self.lasts(**t));
+        let errors = lasting.map(|(n, t)| path.task_error(t - self.origin, arm.position(n), &mut scratch).norm());
+        errors.fold(0.0, |worst, error| if error <= worst { worst } else { error })
+    }
+}

@@ -1,0 +1,110 @@
+//! Limits that a joint crosses: when first, how far, for how long.
+
+use super::Met;
+use super::segment::Segment;
+use kinstep::planner::LimitKind;
+
+/// A limit that a joint crosses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crossing {
+    /// The joint.
+    pub joint: String,
+    /// What crosses its limit.
+    pub kind: LimitKind,
+    /// When it is first beyond the limit \[s\].
+    pub first: f64,
+    /// For how long it is beyond it, all in all \[s\]. `None` where the samples prove that the limit is crossed between them,
+    /// by any smooth motion, but not for how long.
+    pub outside: Option<f64>,
+    /// Where it is furthest beyond the limit, and when.
+    pub worst: Met,
+    /// The limit [rad or m and their derivatives].
+    pub limit: f64,
+}
+
+/// What is beyond one pair of limits while a trajectory is gone through.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beyond {
+    kind: LimitKind,
+    limits: [f64; 2],
+    /// Whether the values are but known to be met somewhere near their times.
+    is_bound: bool,
+    found: Option<Found>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    first: f64,
+    outside: f64,
+    worst: Met,
+}
+
+impl Beyond {
+    pub(super) fn new(kind: LimitKind, limits: [f64; 2]) -> Self {
+        Self { kind, limits, is_bound: false, found: None }
+    }
+
+    /// Takes a value that is met somewhere near `at.t` by any smooth motion, and known but for `slack`; the samples that
+    /// prove it begin at `start` \[s\].
+    pub(super) fn take_bound(&mut self, at: Met, start: f64, slack: f64) {
+        self.is_bound = true;
+        if self.excess(at.value) > slack {
+            self.note(start, 0.0, at);
+        }
+    }
+
+    /// Takes what happens over one step: at its ends known but for the rounding `slacks[0]`, between them for `slacks[1]`.
+    pub(super) fn take(&mut self, segment: &Segment, slacks: [f64; 2]) {
+        let [least, largest] = segment.bounds();
+        if !(self.excess(least) > 0.0 || self.excess(largest) > 0.0) {
+            return;
+        }
+        let at = |s: f64| Met { value: segment.value(s), t: segment.time(s) };
+        let ends = [0.0, 1.0].map(|s| (at(s), slacks[0]));
+        let between = segment.turning_points().into_iter().map(|s| (at(s), slacks[1]));
+        let beyond = ends.into_iter().chain(between).filter(|(met, slack)| self.excess(met.value) > *slack);
+        let furthest = beyond.max_by(|a, b| self.excess(a.0.value).total_cmp(&self.excess(b.0.value)));
+        if let Some((worst, _)) = furthest {
+            let (first, outside) = self.outside(segment);
+            self.note(first.unwrap_or(worst.t), outside, worst);
+        }
+    }
+
+    /// When the step is first beyond the limits, and for how long.
+    fn outside(&self, segment: &Segment) -> (Option<f64>, f64) {
+        let mut places: Vec<f64> = self.limits.iter().filter(|limit| limit.is_finite()).flat_map(|&limit| segment.passes(limit)).collect();
+        places.extend([0.0, 1.0]);
+        places.sort_by(f64::total_cmp);
+        let is_outside = |pair: &&[f64]| self.excess(segment.value(f64::midpoint(pair[0], pair[1]))) > 0.0;
+        let mut first = None;
+        let mut outside = 0.0;
+        for pair in places.windows(2).filter(is_outside) {
+            first.get_or_insert(segment.time(pair[0]));
+            outside += (pair[1] - pair[0]) * segment.duration;
+        }
+        (first, outside)
+    }
+
+    fn note(&mut self, first: f64, outside: f64, worst: Met) {
+        let mut found = self.found.unwrap_or(Found { first, outside: 0.0, worst });
+        found.outside += outside;
+        if self.excess(worst.value) > self.excess(found.worst.value) {
+            found.worst = worst;
+        }
+        self.found = Some(found);
+    }
+
+    fn excess(&self, value: f64) -> f64 {
+        let [lower, upper] = self.limits;
+        (value - upper).max(lower - value)
+    }
+
+    /// Returns what was found.
+    pub(super) fn crossing(&self, joint: &str) -> Option<Crossing> {
+        let Found { first, outside, worst } = self.found?;
+        let [lower, upper] = self.limits;
+        let limit = if worst.value > upper { upper } else { lower };
+        let outside = (!self.is_bound).then_some(outside);
+        Some(Crossing { joint: joint.to_owned(), kind: self.kind, first, outside, worst, limit })
+    }
+}

@@ -1,0 +1,77 @@
+//! Joints that follow others, along a trajectory that may or may not hold them.
+
+use super::Met;
+use crate::trajectory::ArmTrajectory;
+use kinstep::robot::{Joint, JointKind, Robot};
+
+/// How far from where it follows to a recorded angle may stand \[rad\], and how far a recorded length \[m\].
+const APART: [f64; 2] = [1e-2, 1e-3];
+
+/// A joint that does not stand where the one that it follows takes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Straying {
+    /// The joint that follows.
+    pub joint: String,
+    /// The joint that it follows.
+    pub driver: String,
+    /// Its ratio to the driver's position.
+    pub multiplier: f64,
+    /// Its position [rad or m] where the driver stands at zero.
+    pub offset: f64,
+    /// The largest distance [rad or m] from `multiplier * driver + offset`, and when.
+    pub apart: Met,
+}
+
+impl ArmTrajectory {
+    /// Returns the same with the joints of the robot that follow one of its joints and are not in it, moved by
+    /// `q = multiplier * driver + offset`, and those that are in it but stand elsewhere: further than 0.01 rad or 1 mm.
+    pub fn with_followers(&self, robot: &Robot, times: &[f64]) -> (Self, Vec<Straying>) {
+        let place = |name: &str| self.joints.iter().position(|joint| joint == name);
+        let (mut all, mut straying) = (self.clone(), Vec::new());
+        for (follower, driver, multiplier, offset) in followers(robot) {
+            let Some(driven_by) = place(&driver.name) else { continue };
+            let Some(own) = place(&follower.name) else {
+                all.append(&follower.name, |arm, values, is_position| {
+                    let offset = if is_position { offset } else { 0.0 };
+                    let of_driver = values.iter().skip(driven_by).step_by(arm.joints.len());
+                    of_driver.map(|value| multiplier * value + offset).collect()
+                });
+                continue;
+            };
+            let mut apart = Met { value: 0.0, t: times[0] };
+            for (n, &t) in times.iter().enumerate() {
+                let q = self.position(n);
+                apart.larger(q[own] - (multiplier * q[driven_by] + offset), t);
+            }
+            let allowed = APART[usize::from(follower.kind == JointKind::Prismatic)];
+            if apart.value.abs() > allowed {
+                let [joint, driver] = [follower, driver].map(|joint| joint.name.clone());
+                straying.push(Straying { joint, driver, multiplier, offset, apart });
+            }
+        }
+        (all, straying)
+    }
+
+    /// Appends a joint whose values are made of those of all joints, sample after sample.
+    fn append(&mut self, joint: &str, made: impl Fn(&Self, &[f64], bool) -> Vec<f64>) {
+        let joints = self.joints.len();
+        let with = |values: &[f64], is_position: bool| -> Vec<f64> {
+            let added = made(self, values, is_position);
+            let rows = values.chunks_exact(joints.max(1)).zip(added);
+            rows.flat_map(|(row, added)| row.iter().copied().chain([added])).collect()
+        };
+        let positions = with(&self.positions, true);
+        let (velocities, accelerations) = (with(&self.velocities, false), with(&self.accelerations, false));
+        (self.positions, self.velocities, self.accelerations) = (positions, velocities, accelerations);
+        self.joints.push(joint.to_owned());
+    }
+}
+
+/// The joints of a robot that follow, each with its driver, its ratio and its offset.
+fn followers(robot: &Robot) -> impl Iterator<Item = (&Joint, &Joint, f64, f64)> {
+    let follows = |joint: &'_ &Joint| joint.kind.is_movable() && joint.mimic.is_some();
+    robot.joints().iter().filter(follows).filter_map(|joint| {
+        let mimic = joint.mimic?;
+        Some((joint, &robot.joints()[mimic.driver], mimic.multiplier, mimic.offset))
+    })
+}

@@ -1,0 +1,55 @@
+//! How finely a file knows its values.
+
+/// The most decimals that count as a rounding.
+const DECIMALS: i32 = 9;
+/// How far from a whole multiple, as a fraction of it, a difference may be.
+const WHOLE: f64 = 0.01;
+
+/// Returns the largest step in which all of the values can have been rounded: a decimal, that of a single-precision number,
+/// or that of an encoder; zero where there is none.
+pub(super) fn resolution(values: &[f64]) -> f64 {
+    decimal(values).max(single(values)).max(encoder(values))
+}
+
+fn decimal(values: &[f64]) -> f64 {
+    let is_rounded = |places: &i32| {
+        let scale = 10_f64.powi(*places);
+        values.iter().all(|value| {
+            let scaled = value * scale;
+            (scaled - scaled.round()).abs() <= 4.0 * f64::EPSILON * scaled.abs()
+        })
+    };
+    (0..=DECIMALS).find(is_rounded).map_or(0.0, |places| 10_f64.powi(-places))
+}
+
+fn single(values: &[f64]) -> f64 {
+    let is_single = values.iter().all(|&value| f64::from(value as f32) == value);
+    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    if is_single { largest * f64::from(f32::EPSILON) } else { 0.0 }
+}
+
+/// The step of which all differences are whole multiples, if the smallest of them is one.
+fn encoder(values: &[f64]) -> f64 {
+    let differences = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
+    let step = differences().fold(f64::INFINITY, f64::min);
+    let is_whole = |difference: f64| (difference / step - (difference / step).round()).abs() <= WHOLE;
+    let is_rounded = step.is_finite() && differences().nth(1).is_some() && differences().all(is_whole);
+    if is_rounded { step } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_singles_and_encoders_are_told_from_doubles() {
+        let smooth: Vec<f64> = (0..50).map(|n| (0.1 * f64::from(n)).sin()).collect();
+        assert_eq!(resolution(&smooth), 0.0);
+        let rounded = |step: f64| -> Vec<f64> { smooth.iter().map(|q| (q / step).round() * step).collect() };
+        assert_eq!(resolution(&smooth.iter().map(|q| (q * 1e4).round() / 1e4).collect::<Vec<_>>()), 1e-4);
+        let encoder = std::f64::consts::TAU / 4096.0;
+        assert!((resolution(&rounded(encoder)) - encoder).abs() < 1e-9);
+        let single = resolution(&smooth.iter().map(|&q| f64::from(q as f32)).collect::<Vec<_>>());
+        assert!(single > 1e-8 && single < 1e-6, "{single}");
+    }
+}

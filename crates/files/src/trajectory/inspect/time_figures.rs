@@ -1,0 +1,105 @@
+//! What the clock of a trajectory does.
+
+use super::Met;
+use super::continuity::CLOSE;
+use super::interpolant::Knots;
+use super::resolution::resolution;
+use super::rest::REST;
+use crate::trajectory::{ArmTrajectory, Trajectory};
+
+/// The fraction of the usual gap by which gaps may differ in even time.
+const UNEVEN: f64 = 1e-6;
+/// The fraction of the fastest declared velocity that is more than the noise of an arm at rest.
+const MOVING: f64 = 0.05;
+/// How many times the hardest acceleration elsewhere it takes to stand still for a step that was not meant.
+const STALL: f64 = 10.0;
+
+/// What the clock does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimeFigures {
+    /// The usual gap between samples \[s\]: the median.
+    pub gap: f64,
+    /// The smallest and the largest gap, and when they end \[s\].
+    pub gaps: [Met; 2],
+    /// Whether all gaps are equal but for rounding.
+    pub is_even: bool,
+    /// Samples that repeat the one before while an arm moves through both: how often, and when first \[s\].
+    pub repeated: Option<(usize, f64)>,
+}
+
+impl TimeFigures {
+    /// Returns the figures of a trajectory with two samples at least.
+    pub fn of(trajectory: &Trajectory) -> Self {
+        let times = &trajectory.times;
+        let gap = |n: usize| Met { value: times[n] - times[n - 1], t: times[n] };
+        let mut gaps: Vec<Met> = (1..times.len()).map(gap).collect();
+        gaps.sort_by(|a, b| a.value.total_cmp(&b.value));
+        let nothing = Met::default();
+        let at = |index: usize| gaps.get(index).copied().unwrap_or(nothing);
+        let (first, usual, last) = (at(0), at(gaps.len() / 2), at(gaps.len().saturating_sub(1)));
+        // Times carry the rounding of the last of them, and files may have rounded to nanoseconds.
+        let rounding = 4.0 * f64::EPSILON * times.last().copied().unwrap_or(0.0).abs() + 2e-9;
+        let is_even = last.value - first.value <= UNEVEN * usual.value + rounding;
+        Self { gap: usual.value, gaps: [first, last], is_even, repeated: repeated(trajectory) }
+    }
+}
+
+/// Samples close together that all joints of all arms repeat although one of them moves through.
+fn repeated(trajectory: &Trajectory) -> Option<(usize, f64)> {
+    let times = &trajectory.times;
+    let same = |n: usize| trajectory.arms.iter().all(|arm| arm.position(n) == arm.position(n - 1));
+    let still: Vec<usize> = (1..times.len()).filter(|&n| times[n] - times[n - 1] <= CLOSE && same(n)).collect();
+    if still.is_empty() {
+        return None;
+    }
+    let is_stalled: Vec<Box<dyn Fn(usize) -> bool>> = trajectory.arms.iter().flat_map(|arm| stalls(arm, times)).collect();
+    let mut found = still.into_iter().filter(|&n| is_stalled.iter().any(|is_stalled| is_stalled(n)));
+    let first = found.next()?;
+    Some((1 + found.count(), times[first]))
+}
+
+/// For every joint, whether it moves through a sample that repeats the one before.
+fn stalls<'t>(arm: &ArmTrajectory, times: &'t [f64]) -> Vec<Box<dyn Fn(usize) -> bool + 't>> {
+    let joint = |joint: usize| -> Box<dyn Fn(usize) -> bool + 't> {
+        let knots = Knots::of(arm, joint, times);
+        if !knots.velocities.is_empty() {
+            let fastest = knots.velocities.iter().map(|velocity| velocity.abs()).fold(0.0, f64::max);
+            let least = REST.max(MOVING * fastest);
+            return Box::new(move |n| is_declared(&knots.velocities[n - 1..=n], least));
+        }
+        let (hardest, rounding) = (hardest(&knots), 4.0 * resolution(&knots.positions));
+        Box::new(move |n| is_passed(&knots, n, hardest, rounding))
+    };
+    (0..arm.joints.len()).map(joint).collect()
+}
+
+/// Declared velocities that take the joint through a place and back to it in one step.
+fn is_declared(velocities: &[f64], least: f64) -> bool {
+    velocities.iter().all(|&v| v > least) || velocities.iter().all(|&v| v < -least)
+}
+
+/// A joint that moves on as before after it stood still for one sample, harder than it does anything else.
+fn is_passed(knots: &Knots<'_>, n: usize, hardest: f64, rounding: f64) -> bool {
+    if n < 2 || n >= knots.steps() {
+        return false;
+    }
+    let (before, after, gap) = (knots.slope(n - 2), knots.slope(n), knots.gap(n - 1));
+    let slower = before.abs().min(after.abs());
+    before * after > 0.0 && slower * gap > rounding && slower / gap > STALL * hardest
+}
+
+/// The hardest acceleration of a joint, with steps left out that repeat a position.
+fn hardest(knots: &Knots<'_>) -> f64 {
+    let mut kept = Knots { times: &[], positions: Vec::new(), velocities: Vec::new(), ..knots.clone() };
+    let mut times = Vec::new();
+    for (n, &position) in knots.positions.iter().enumerate() {
+        if kept.positions.last() != Some(&position) {
+            kept.positions.push(position);
+            times.push(knots.times[n]);
+        }
+    }
+    let kept = Knots { times: &times, ..kept };
+    let slopes = kept.differences(&kept.positions, 1);
+    let accelerations = kept.differences(&slopes, 2);
+    accelerations.iter().map(|acceleration| acceleration.abs()).fold(0.0, f64::max)
+}
