@@ -67,6 +67,11 @@ impl<'t> Knots<'t> {
         }
     }
 
+    /// Positions alone.
+    pub(super) fn through(times: &'t [f64], positions: Vec<f64>) -> Self {
+        Self { times, positions, velocities: Vec::new(), accelerations: Vec::new() }
+    }
+
     /// Number of steps between samples.
     pub(super) fn steps(&self) -> usize {
         self.times.len() - 1
@@ -88,6 +93,13 @@ impl<'t> Knots<'t> {
         let span = |n: usize| self.times[n + order] - self.times[n];
         let pairs = below.windows(2).enumerate();
         pairs.map(|(n, pair)| order as f64 * (pair[1] - pair[0]) / span(n)).collect()
+    }
+
+    /// The least acceleration that any smooth motion through the positions has where it is largest: zero with two samples.
+    pub(super) fn hardest(&self) -> f64 {
+        let slopes = self.differences(&self.positions, 1);
+        let accelerations = self.differences(&slopes, 2);
+        accelerations.iter().map(|acceleration| acceleration.abs()).fold(0.0, f64::max)
     }
 
     /// The position over step `n`, and its three derivatives. Ends that the samples declare are those to the last bit.

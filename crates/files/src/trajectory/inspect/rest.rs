@@ -41,12 +41,10 @@ pub(super) fn rests(knots: &Knots<'_>) -> [Rest; 2] {
             if velocity.abs() <= REST { Rest::AtRest } else { Rest::InMotion(velocity) }
         });
     }
-    let slopes = knots.differences(&knots.positions, 1);
-    let accelerations = knots.differences(&slopes, 2);
-    let elsewhere = accelerations.iter().map(|acceleration| acceleration.abs()).fold(0.0, f64::max);
+    let elsewhere = knots.hardest();
     let rounding = resolution(&knots.positions);
     [0, knots.steps() - 1].map(|n| {
-        let (slope, gap) = (slopes[n], knots.gap(n));
+        let (slope, gap) = (knots.slope(n), knots.gap(n));
         // From rest to a position at a distance takes twice the distance over the time squared.
         let needed = 2.0 * slope.abs() / gap - 4.0 * rounding / (gap * gap);
         if needed <= 0.0 || gap <= CLOSE && needed <= LIKE_ELSEWHERE * elsewhere {

@@ -90,16 +90,12 @@ fn is_passed(knots: &Knots<'_>, n: usize, hardest: f64, rounding: f64) -> bool {
 
 /// The hardest acceleration of a joint, with steps left out that repeat a position.
 fn hardest(knots: &Knots<'_>) -> f64 {
-    let mut kept = Knots { times: &[], positions: Vec::new(), velocities: Vec::new(), ..knots.clone() };
-    let mut times = Vec::new();
-    for (n, &position) in knots.positions.iter().enumerate() {
-        if kept.positions.last() != Some(&position) {
-            kept.positions.push(position);
-            times.push(knots.times[n]);
+    let (mut times, mut positions) = (Vec::new(), Vec::new());
+    for (&position, &time) in knots.positions.iter().zip(knots.times) {
+        if positions.last() != Some(&position) {
+            positions.push(position);
+            times.push(time);
         }
     }
-    let kept = Knots { times: &times, ..kept };
-    let slopes = kept.differences(&kept.positions, 1);
-    let accelerations = kept.differences(&slopes, 2);
-    accelerations.iter().map(|acceleration| acceleration.abs()).fold(0.0, f64::max)
+    Knots::through(&times, positions).hardest()
 }
