@@ -249,7 +249,8 @@ mod tests {
     }
 
     fn figures(arm: &ArmTrajectory, times: &[f64]) -> JointFigures {
-        arm.inspect(times, &[Limits { lower: -0.1, upper: 2.0, velocity: 4.0 }]).remove(0)
+        arm.inspect(times, &[Limits { lower: -0.1, upper: 2.0, velocity: 4.0, ..Limits::UNLIMITED }])
+            .remove(0)
     }
 
     #[test]
