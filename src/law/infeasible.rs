@@ -5,6 +5,10 @@ pub enum LimitKind {
     Position,
     /// Velocity limit [rad/s or m/s], of the joint velocity or of the mean velocity between two samples.
     Velocity,
+    /// Acceleration limit [rad/s^2 or m/s^2].
+    Acceleration,
+    /// Jerk limit [rad/s^3 or m/s^3].
+    Jerk,
 }
 
 impl LimitKind {
@@ -13,6 +17,8 @@ impl LimitKind {
         match self {
             Self::Position => "position",
             Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+            Self::Jerk => "jerk",
         }
     }
 }

@@ -31,7 +31,8 @@ impl Robot {
     /// ratios, every number with all its digits.
     ///
     /// Shapes, inertias, efforts and dynamics are not part of a [`Robot`] and are not written; a comment in the text says
-    /// so. Limits that are not known are written as 1e308. Angles stand as they were read; where an origin was computed
+    /// so. Limits that are not known are written as 1e308, or left out where the standard allows it (acceleration and jerk, of
+    /// URDF 1.2). Angles stand as they were read; where an origin was computed
     /// (from a table, a calibration, a lock, a quaternion) they are worked out from the rotation, which costs at most a
     /// few units in the last place.
     ///
@@ -100,7 +101,13 @@ impl Robot {
 fn write_limits(text: &mut String, joint: &Joint) {
     let limits = joint.limits;
     let bound = |value: f64| number(if value.is_finite() { value } else { UNKNOWN.copysign(value) });
-    let rest = format!("effort=\"{}\" velocity=\"{}\"", number(UNKNOWN), bound(limits.velocity));
+    let mut rest = format!("effort=\"{}\" velocity=\"{}\"", number(UNKNOWN), bound(limits.velocity));
+    for (name, value) in [("acceleration", limits.acceleration), ("jerk", limits.jerk)] {
+        if value.is_finite() {
+            let _ = write!(rest, " {name}=\"{}\"", number(value));
+        }
+    }
+    let is_held = [limits.velocity, limits.acceleration, limits.jerk].iter().any(|limit| limit.is_finite());
     let _ = match joint.kind {
         JointKind::Revolute | JointKind::Prismatic => writeln!(
             text,
@@ -108,7 +115,7 @@ fn write_limits(text: &mut String, joint: &Joint) {
             bound(limits.lower),
             bound(limits.upper)
         ),
-        JointKind::Continuous if limits.velocity.is_finite() => writeln!(text, "    <limit {rest}/>"),
+        JointKind::Continuous if is_held => writeln!(text, "    <limit {rest}/>"),
         _ => Ok(()),
     };
 }

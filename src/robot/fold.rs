@@ -174,11 +174,14 @@ fn narrowed(driver: Limits, follower: &Joint) -> Limits {
     let Some(mimic) = follower.mimic else { return driver };
     let at = |position: f64| (position - mimic.offset) / mimic.multiplier;
     let (a, b) = (at(follower.limits.lower), at(follower.limits.upper));
-    Limits {
-        lower: driver.lower.max(a.min(b)),
-        upper: driver.upper.min(a.max(b)),
-        velocity: driver.velocity.min(follower.limits.velocity / mimic.multiplier.abs()),
-    }
+    let ratio = mimic.multiplier.abs();
+    driver.narrowed_by(&Limits {
+        lower: a.min(b),
+        upper: a.max(b),
+        velocity: follower.limits.velocity / ratio,
+        acceleration: follower.limits.acceleration / ratio,
+        jerk: follower.limits.jerk / ratio,
+    })
 }
 
 #[cfg(test)]

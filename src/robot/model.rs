@@ -73,7 +73,8 @@ impl fmt::Display for JointKind {
     }
 }
 
-/// The range and the speed that a joint allows. What the file does not say is infinite: unknown, and not checked.
+/// The range, the speed, the acceleration and the jerk that a joint allows. What the file does not say is infinite: unknown,
+/// and not checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Smallest position \[rad\] or \[m\].
@@ -82,16 +83,44 @@ pub struct Limits {
     pub upper: f64,
     /// Largest speed in either direction [rad/s] or [m/s].
     pub velocity: f64,
+    /// Largest acceleration in either direction [rad/s^2] or [m/s^2].
+    pub acceleration: f64,
+    /// Largest jerk in either direction [rad/s^3] or [m/s^3].
+    pub jerk: f64,
 }
 
 impl Limits {
     /// The limits of a joint of which none is known: all infinite.
-    pub const UNLIMITED: Limits =
-        Limits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: f64::INFINITY };
+    pub const UNLIMITED: Limits = Limits {
+        lower: f64::NEG_INFINITY,
+        upper: f64::INFINITY,
+        velocity: f64::INFINITY,
+        acceleration: f64::INFINITY,
+        jerk: f64::INFINITY,
+    };
 
     /// Whether `position` is inside the range; what is not finite never is.
     pub fn contains(&self, position: f64) -> bool {
         position.is_finite() && self.lower <= position && position <= self.upper
+    }
+
+    /// Returns what both allow: of two joints that are one, or of a joint of which two files speak.
+    ///
+    /// ```
+    /// use kinstep::robot::Limits;
+    /// let slow = Limits { velocity: 1.0, ..Limits::UNLIMITED };
+    /// let short = Limits { lower: -0.5, upper: 0.5, velocity: 2.0, ..Limits::UNLIMITED };
+    /// assert_eq!(slow.narrowed_by(&short), Limits { velocity: 1.0, ..short });
+    /// ```
+    #[must_use]
+    pub fn narrowed_by(&self, other: &Limits) -> Limits {
+        Limits {
+            lower: self.lower.max(other.lower),
+            upper: self.upper.min(other.upper),
+            velocity: self.velocity.min(other.velocity),
+            acceleration: self.acceleration.min(other.acceleration),
+            jerk: self.jerk.min(other.jerk),
+        }
     }
 }
 

@@ -91,6 +91,46 @@ fn limits_are_watched_on_every_sample() {
 }
 
 #[test]
+fn accelerations_and_jerks_between_samples_are_watched_in_followers_too() {
+    // A slider on a line x = s(t): by the law sin^2 its acceleration is known.
+    let urdf = |rest: &str| {
+        format!(
+            r#"<robot name="slide"><link name="base"/><link name="a"/><link name="tip"/>
+            <joint name="x" type="prismatic"><parent link="base"/><child link="a"/><axis xyz="1 0 0"/>
+            <limit lower="-9" upper="9" velocity="9" effort="1" {rest}/></joint>
+            <joint name="y" type="prismatic"><parent link="a"/><child link="tip"/><axis xyz="1 0 0"/>
+            <limit lower="-9" upper="9" velocity="9" effort="1" {}/><mimic joint="x" multiplier="-3"/></joint></robot>"#,
+            if rest.is_empty() { "acceleration=\"1.5\"" } else { "" }
+        )
+    };
+    let plan = |rest: &str| {
+        let chain = Robot::from_urdf(&urdf(rest)).unwrap().chain("base", "tip").unwrap();
+        let start = chain.forward(&[0.0], &mut chain.scratch()).pose();
+        let motion = Motion::from_pose(line(-4.0, 0.0), Quintic, DURATION, &start);
+        let arm = Arm::new("arm", chain, vec![0.0], TaskKind::PositionXy, motion);
+        scheme::dtsmp([arm], 0.01, 0.4).duration(DURATION).build().unwrap().run()
+    };
+    // The slider goes 2 m by a quintic: at most 10/sqrt(3) m / T^2 of acceleration, 60 m / T^3 of jerk at its ends.
+    let most = [2.0 * 10.0 / 3.0_f64.sqrt() / DURATION.powi(2), 2.0 * 60.0 / DURATION.powi(3)];
+    let kinds = |rest: String| plan(&rest).arms[0].violations.iter().map(|v| v.kind).collect::<Vec<_>>();
+    assert_eq!(kinds(format!("acceleration=\"{}\"", 0.999 * most[0])), [LimitKind::Acceleration]);
+    assert_eq!(
+        kinds(format!("acceleration=\"{}\" jerk=\"{}\"", 1.001 * most[0], 0.97 * most[1])),
+        [LimitKind::Jerk]
+    );
+    // The Euler steps of the start are left with a kink.
+    assert_eq!(kinds(format!("acceleration=\"{}\" jerk=\"{}\"", 1.001 * most[0], 7.0 * most[1])), []);
+    // Of the follower, which moves three times as fast.
+    let plan = plan("");
+    let [followed] = &plan.arms[0].violations[..] else { panic!("{:?}", plan.arms[0].violations) };
+    assert_eq!(
+        (followed.joint.as_str(), followed.kind, followed.limit.abs()),
+        ("x", LimitKind::Acceleration, 0.5)
+    );
+    assert!((followed.value.abs() - most[0]).abs() < 1e-3, "{followed:?}");
+}
+
+#[test]
 fn a_path_laid_by_its_centre_has_to_begin_at_the_tip() {
     let chain = planar();
     let motion = Motion::centered(

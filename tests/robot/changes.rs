@@ -446,3 +446,38 @@ fn a_tool_needs_a_link_and_a_name_of_its_own() {
     let twice = robot.with_tool("panda_hand", "pen", &tool).unwrap().with_tool("pen", "nib", &tool).unwrap();
     assert_eq!(twice.chain("panda_link0", "nib").unwrap().dof(), 7);
 }
+
+#[test]
+fn limits_of_acceleration_and_jerk_are_read_carried_and_written() {
+    let urdf = |rest: &str| {
+        format!(
+            r#"<robot name="r"><link name="base"/><link name="l"/><link name="tip"/>
+            <joint name="a" type="continuous"><parent link="base"/><child link="l"/><axis xyz="0 0 1"/>
+            <limit velocity="2" effort="1" acceleration="3" {rest}/></joint>
+            <joint name="b" type="prismatic"><parent link="l"/><child link="tip"/><axis xyz="0 0 1"/>
+            <limit lower="-2" upper="2" velocity="2" effort="1" acceleration="4" jerk="5"/>
+            <mimic joint="a" multiplier="-2"/></joint></robot>"#
+        )
+    };
+    let robot = Robot::from_urdf(&urdf(r#"jerk="100""#)).unwrap();
+    let limits = |robot: &Robot, joint: &str| {
+        let limits = robot.joint(joint).unwrap().limits;
+        (limits.acceleration, limits.jerk)
+    };
+    assert_eq!((limits(&robot, "a"), limits(&robot, "b")), ((3.0, 100.0), (4.0, 5.0)));
+    let chain = robot.chain("base", "tip").unwrap();
+    assert_eq!((chain.joints()[0].limits.acceleration, chain.joints()[0].limits.jerk), (2.0, 2.5));
+    assert_eq!(Robot::from_urdf(&robot.to_urdf().unwrap()).unwrap().joints(), robot.joints());
+    let reversed = JointCorrection { reversed: true, zero: 0.1, ..JointCorrection::default() };
+    let mut calibration = Calibration::default();
+    calibration.insert("a", reversed);
+    assert_eq!(limits(&robot.with_calibration(&calibration).unwrap(), "a"), (3.0, 100.0));
+    for (wrong, cause) in [("-1", "negative"), ("fast", "not a number"), ("nan", "not a number")] {
+        let robot = Robot::from_urdf(&urdf(&format!(r#"jerk="{wrong}""#))).unwrap();
+        assert!(robot.joint("a").unwrap().defect.as_ref().unwrap().reason.contains(cause), "{wrong}");
+    }
+    let said = Robot::from_urdf(&urdf(r#"deceleration="1""#)).unwrap();
+    assert!(
+        said.diagnostics().iter().any(|found| found.message.contains("`deceleration` limit is not checked"))
+    );
+}

@@ -70,10 +70,8 @@ fn four_unit_lengths_are_the_planar_arm() {
     assert!((chain.reach() - 2.8).abs() < 1e-15);
     let limit = 5.0 * std::f64::consts::PI / 6.0;
     assert!(
-        chain
-            .joints()
-            .iter()
-            .all(|joint| joint.limits == Limits { lower: -limit, upper: limit, velocity: 2.0 })
+        chain.joints().iter().all(|joint| joint.limits
+            == Limits { lower: -limit, upper: limit, velocity: 2.0, ..Limits::UNLIMITED })
     );
 }
 
@@ -161,7 +159,7 @@ fn everything_that_is_wrong_with_a_table_is_said_with_its_place() {
             "1:14: error: `craig` is no convention: \"standard\" is Rz(theta) Tz(d) Tx(a) Rx(alpha), \"modified\" (Craig) is \
              Rx(alpha) Tx(a) Rz(theta) Tz(d)",
             "2:1: error: a table of a robot has no key `colour`; it has `name`, `base`, `convention`, `joint`, `planar`, \
-             `limits` and `velocity`",
+             `limits`, `velocity`, `acceleration` and `jerk`",
             "4:1: error: a row has no key `alhpa`; did you mean `alpha`?",
             "5:5: error: `a`: \"pie\", column 1: 'pie' is not known; the only name is pi",
             "7:8: error: `ball` is no kind of joint; rows are `revolute`, `continuous`, `prismatic` or `fixed`",

@@ -49,6 +49,8 @@ struct JointLine {
     lower: Option<f64>,
     upper: Option<f64>,
     velocity: Option<f64>,
+    acceleration: Option<f64>,
+    jerk: Option<f64>,
     mimics: Option<String>,
 }
 
@@ -102,6 +104,8 @@ impl JointLine {
             lower: finite(joint.limits.lower),
             upper: finite(joint.limits.upper),
             velocity: finite(joint.limits.velocity),
+            acceleration: finite(joint.limits.acceleration),
+            jerk: finite(joint.limits.jerk),
             mimics: joint.mimic.map(|mimic| robot.joints()[mimic.driver].name.clone()),
         }
     }
@@ -194,7 +198,7 @@ impl Show for RobotCard {
     fn text(&self) -> String {
         let mut text = format!("{}\n\n{}\n", self.heading(), self.tree());
         text.push_str(
-            "Limits in rad, rad/s (revolute) or m, m/s (prismatic); - where the file gives none. A link hangs from the \
+            "Limits in rad, rad/s, ... (revolute) or m, m/s, ... (prismatic); - where the file gives none. A link hangs from the \
              one above it, or from the one whose branch it is on.\n",
         );
         if !self.chains.is_empty() {
@@ -234,7 +238,11 @@ impl RobotCard {
     }
 
     fn tree(&self) -> Table {
-        let mut table = Table::new(["link", "joint", "type", "lower", "upper", "velocity"]);
+        let heads = ["link", "joint", "type", "lower", "upper", "velocity", "acceleration", "jerk"];
+        // Most files know nothing of the last two.
+        let is_known = |joint: &JointLine| joint.acceleration.or(joint.jerk).is_some();
+        let columns = heads.len() - if self.joints.iter().any(is_known) { 0 } else { 2 };
+        let mut table = Table::new(heads.into_iter().take(columns));
         let limit = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), short);
         for row in &self.rows {
             let Some(joint) = row.joint.map(|joint| &self.joints[joint]) else {
@@ -248,7 +256,9 @@ impl RobotCard {
                 .map_or_else(|| joint.kind.to_owned(), |driver| format!("{}, follows {driver}", joint.kind));
             let mut cells = vec![row.drawn.clone(), joint.name.clone(), kind];
             if joint.kind != JointKind::Fixed.as_str() {
-                cells.extend([joint.lower, joint.upper, joint.velocity].map(limit));
+                let JointLine { lower, upper, velocity, acceleration, jerk, .. } = *joint;
+                cells.extend([lower, upper, velocity, acceleration, jerk].map(limit));
+                cells.truncate(columns);
             }
             table.row(cells);
         }

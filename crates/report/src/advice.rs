@@ -34,11 +34,11 @@ pub fn suggestions(plan: &Plan, table: &FormulaTable, scenario: &Scenario) -> Ve
     if !plan.is_completed() {
         return next;
     }
-    if let Some(excess) = velocity_excess(plan) {
+    if let Some(excess) = motion_excess(plan) {
         let longer = (scenario.duration.value() * excess * 1.05).ceil();
         next.push(Suggestion::new(
             format!("--set duration={longer}"),
-            "slow enough for the joints' velocity limits",
+            "slow enough for what limits the joints' motion",
         ));
     }
     if errors_follow_the_order(plan, formula) {
@@ -65,9 +65,18 @@ fn errors_follow_the_order(plan: &Plan, formula: &Formula) -> bool {
     worst > ROUND_OFF && left_over < SETTLED && plan.noise.is_none()
 }
 
-/// By what factor the worst joint velocity exceeds its limit, where one does: velocities fall like 1/duration.
-fn velocity_excess(plan: &Plan) -> Option<f64> {
+/// How many times longer a run has to take for its velocities, accelerations and jerks to be within their limits, where they
+/// are not: they fall like the first, second and third power of the duration.
+fn motion_excess(plan: &Plan) -> Option<f64> {
     let all = plan.arms.iter().flat_map(|arm| &arm.violations);
-    let excess = all.filter(|v| v.kind == LimitKind::Velocity).map(|v| (v.value / v.limit).abs());
+    let excess = all.filter_map(|v| {
+        let excess = (v.value / v.limit).abs();
+        match v.kind {
+            LimitKind::Position => None,
+            LimitKind::Velocity => Some(excess),
+            LimitKind::Acceleration => Some(excess.sqrt()),
+            LimitKind::Jerk => Some(excess.cbrt()),
+        }
+    });
     excess.filter(|excess| excess.is_finite()).reduce(f64::max)
 }

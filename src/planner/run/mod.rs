@@ -1,5 +1,6 @@
 //! Runs that advance together by one stepper: what is recorded of them, what disturbs them, and what stops them.
 
+mod differences;
 mod ensemble;
 mod field;
 mod noise;
@@ -8,6 +9,7 @@ mod reachability;
 mod record;
 mod stop_criteria;
 
+pub use differences::Peak;
 pub use noise::Noise;
 pub use plan::{ArmPlan, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
 

@@ -75,7 +75,10 @@ impl Record {
             description;
         for (plan, runtime) in self.arms.iter_mut().zip(arms) {
             take_figures(plan, &runtime.monitor);
-            plan.violations = runtime.monitor.violations(&runtime.arm.chain);
+            let chain = &runtime.arm.chain;
+            plan.violations = runtime.monitor.violations(chain);
+            let limits = chain.joints().iter().map(|joint| &joint.limits);
+            plan.violations.extend(plan.crossed_by_differences(limits, sigma));
             warnings.extend(damping_warning(plan, runtime.threshold));
             warnings.extend(rate_warning(&plan.name, runtime.monitor.largest_rate, largest_criterion_rate));
         }

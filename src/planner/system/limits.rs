@@ -15,7 +15,7 @@ pub(in crate::planner) struct JointLimits<A> {
 
 impl JointLimits<[f64; 1]> {
     pub(in crate::planner) fn of(limits: &Limits, sigma: f64) -> Self {
-        let Limits { lower, upper, velocity } = *limits;
+        let Limits { lower, upper, velocity, .. } = *limits;
         Self {
             lower: [lower],
             upper: [upper],

@@ -15,7 +15,7 @@ pub struct Violation {
     pub kind: LimitKind,
     /// When it was worst \[s\].
     pub t: f64,
-    /// The position or velocity then.
+    /// The position, velocity, acceleration or jerk then.
     pub value: f64,
     /// The limit crossed.
     pub limit: f64,

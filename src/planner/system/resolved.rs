@@ -332,7 +332,7 @@ impl Union {
         for arm in arms {
             for joint in arm.chain.joints() {
                 if let Some(place) = union.place(arm, &joint.name) {
-                    union.limits[place] = narrower(&union.limits[place], &joint.limits);
+                    union.limits[place] = union.limits[place].narrowed_by(&joint.limits);
                 } else {
                     union.joints.push((Owner::of(arm), joint.name.clone()));
                     union.limits.push(joint.limits);
@@ -365,14 +365,6 @@ impl Union {
 impl Owner {
     fn of(arm: &Arm) -> Self {
         arm.machine.clone().map_or_else(|| Self::Arm(arm.name.clone()), Self::Machine)
-    }
-}
-
-fn narrower(one: &Limits, other: &Limits) -> Limits {
-    Limits {
-        lower: one.lower.max(other.lower),
-        upper: one.upper.min(other.upper),
-        velocity: one.velocity.min(other.velocity),
     }
 }
 

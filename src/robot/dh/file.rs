@@ -6,8 +6,10 @@ use crate::robot::report::Report;
 use crate::robot::toml_table::{Entries, Value, read_toml, real, wrong_type};
 use crate::robot::{JointKind, Limits};
 
-const KEYS: [&str; 7] = ["name", "base", "convention", "joint", "planar", "limits", "velocity"];
-const ROW_KEYS: [&str; 9] = ["name", "link", "kind", "a", "alpha", "d", "theta", "limits", "velocity"];
+const KEYS: [&str; 9] =
+    ["name", "base", "convention", "joint", "planar", "limits", "velocity", "acceleration", "jerk"];
+const ROW_KEYS: [&str; 11] =
+    ["name", "link", "kind", "a", "alpha", "d", "theta", "limits", "velocity", "acceleration", "jerk"];
 const KINDS: [JointKind; 4] =
     [JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic, JointKind::Fixed];
 
@@ -17,9 +19,9 @@ impl DhTable {
     /// At the top: `name` of the robot (empty unless given), `base` (the first link, default `base`), `convention` (`"standard"` or
     /// `"modified"`), and the rows as `[[joint]]`, each with `a`, `alpha`, `d`, `theta` (0 unless given; angles in rad or
     /// as expressions in pi), `kind` (`"revolute"`, `"continuous"`, `"prismatic"`, `"fixed"`; revolute with `limits`,
-    /// continuous without, unless given), `limits = [lower, upper]`, `velocity`, `name` of the joint (default `joint1`,
+    /// continuous without, unless given), `limits = [lower, upper]`, `velocity`, `acceleration`, `jerk`, `name` of the joint (default `joint1`,
     /// `joint2`, ...) and of the `link` with the row's frame (default `link1`, ..., and `tip` for the last). Or, for an arm
-    /// in the plane, `planar = [1.0, 0.8]` with the lengths of its links, and `limits` and `velocity` of all joints.
+    /// in the plane, `planar = [1.0, 0.8]` with the lengths of its links, and the limits of all joints.
     ///
     /// # Errors
     /// [`DhError::Text`] with everything that is wrong, by place.
@@ -114,7 +116,7 @@ fn rows(
         wrong_type("joint", "a list of rows, each begun by a line [[joint]]", joints, report);
         return None;
     };
-    for key in ["limits", "velocity"] {
+    for key in ["limits", "velocity", "acceleration", "jerk"] {
         if file.value(key).is_some() {
             report.error(file.place(key), format!("`{key}` belongs into the rows, or beside `planar`"));
         }
@@ -217,8 +219,10 @@ fn limits(table: &Entries<'_, '_>, report: &mut Report<'_>) -> Limits {
             _ => wrong_type("limits", "two numbers, [lower, upper]", value, report),
         }
     }
-    if let Some(value) = table.value("velocity") {
-        limits.velocity = real("velocity", value, report).unwrap_or(limits.velocity);
-    }
+    let mut magnitude =
+        |key: &str| table.value(key).and_then(|value| real(key, value, report)).unwrap_or(f64::INFINITY);
+    limits.velocity = magnitude("velocity");
+    limits.acceleration = magnitude("acceleration");
+    limits.jerk = magnitude("jerk");
     limits
 }

@@ -169,7 +169,7 @@ impl DhRow {
     }
 
     fn limits_problem(&self, kind: JointKind) -> Option<(&'static str, String)> {
-        let Limits { lower, upper, velocity } = self.limits;
+        let Limits { lower, upper, velocity, acceleration, jerk } = self.limits;
         let of_range = if lower > upper {
             Some(format!("its lower limit {lower} is greater than its upper limit {upper}"))
         } else if !(lower < f64::INFINITY && upper > f64::NEG_INFINITY) {
@@ -179,10 +179,13 @@ impl DhRow {
         } else {
             None
         };
-        let is_slow = !(velocity > 0.0);
-        let of_speed =
-            is_slow.then(|| format!("its velocity limit {velocity} lets it never move; give a positive one"));
-        of_range.map(|cause| ("limits", cause)).or(of_speed.map(|cause| ("velocity", cause)))
+        let mut magnitudes =
+            [("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk)].into_iter();
+        let held = magnitudes.find(|(_, limit)| !(*limit > 0.0));
+        let of_motion = held.map(|(key, limit)| {
+            (key, format!("its {key} limit {limit} lets it never move; give a positive one"))
+        });
+        of_range.map(|cause| ("limits", cause)).or(of_motion)
     }
 
     /// The constant transforms before and after the motion about (or along) z.

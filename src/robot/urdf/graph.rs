@@ -336,9 +336,13 @@ fn angles(raw: &RawJoint) -> Option<[f64; 3]> {
 
 fn limits(raw: &RawJoint) -> Limits {
     match &raw.read {
-        Some(read) if raw.is_movable() => {
-            Limits { lower: read.limit.lower, upper: read.limit.upper, velocity: read.limit.velocity }
-        }
+        Some(read) if raw.is_movable() => Limits {
+            lower: read.limit.lower,
+            upper: read.limit.upper,
+            velocity: read.limit.velocity,
+            acceleration: raw.acceleration,
+            jerk: raw.jerk,
+        },
         _ => Limits::UNLIMITED,
     }
 }

@@ -29,12 +29,21 @@ pub(super) fn read(reader: &mut Reader<'_, '_, '_, '_>) {
     if !reader.joint.is_movable() {
         return;
     }
-    let velocity = speed(reader, node, "velocity").unwrap_or(f64::INFINITY);
-    let _ = speed(reader, node, "effort");
+    let [velocity, acceleration, jerk] = ["velocity", "acceleration", "jerk"]
+        .map(|name| magnitude(reader, node, name).unwrap_or(f64::INFINITY));
+    (reader.joint.acceleration, reader.joint.jerk) = (acceleration, jerk);
+    let _ = magnitude(reader, node, "effort");
+    if magnitude(reader, node, "deceleration").is_some() {
+        let cause = "its `deceleration` limit is not checked: `acceleration` counts in both directions";
+        reader.note(element::offset(node), cause);
+    }
     let (lower, upper) = if is_bounded { bounds(reader, node) } else { (f64::NEG_INFINITY, f64::INFINITY) };
     warn_of_missing(reader, node, is_bounded);
-    if velocity == 0.0 {
-        reader.warn(element::offset(node), "its velocity limit is 0: this joint can never move");
+    for (name, value) in [("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk)] {
+        if value == 0.0 {
+            let cause = format!("its {name} limit is 0: this joint can never move");
+            reader.warn(element::offset(node), &cause);
+        }
     }
     write(reader, lower, upper, velocity);
 }
@@ -102,8 +111,8 @@ fn warn_of_missing(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>, is_b
     }
 }
 
-/// Returns a velocity or effort limit, not negative.
-fn speed(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>, name: &str) -> Option<f64> {
+/// Returns a limit in either direction, not negative.
+fn magnitude(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>, name: &str) -> Option<f64> {
     let value = value(reader, node, name)?;
     if value < 0.0 {
         let place = element::attribute(node, name).map_or(element::offset(node), |found| found.range().start);

@@ -24,6 +24,9 @@ pub(super) struct RawJoint {
     /// The orientation, when it is given as a quaternion: urdf-rs turns one into angles and loses up to
     /// 4.5e-3 rad near a pitch of 90 degrees, so it is kept from it.
     pub(super) quaternion: Option<UnitQuaternion<f64>>,
+    /// Limits that urdf-rs does not know: acceleration and jerk, infinite where the file gives none.
+    pub(super) acceleration: f64,
+    pub(super) jerk: f64,
     /// The elements that carry values, written for urdf-rs.
     pub(super) values: String,
     /// What urdf-rs read.

@@ -33,6 +33,8 @@ impl<'r, 'a, 'i, 't> Reader<'r, 'a, 'i, 't> {
             child: None,
             mimic: None,
             quaternion: None,
+            acceleration: f64::INFINITY,
+            jerk: f64::INFINITY,
             values: String::new(),
             read: None,
             defect: None,

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::PlanPage;
 use super::markup::{escaped, plain};
+use kinstep::planner::Peak;
 use kinstep::robot::{ChainJoint, Limits};
 use kinstep_files::trajectory::ArmTrajectory;
 
@@ -17,6 +18,8 @@ pub(super) struct Use {
     lowest: f64,
     highest: f64,
     fastest: f64,
+    /// The largest acceleration and jerk between samples.
+    hardest: [Peak; 2],
 }
 
 /// How a share of a limit is to be seen.
@@ -60,12 +63,15 @@ impl Use {
         let joints = arm.joints.len().max(1);
         let every =
             |values: &[f64]| -> Vec<f64> { values.iter().skip(index).step_by(joints).copied().collect() };
-        let positions = every(&arm.positions);
+        let (positions, velocities) = (every(&arm.positions), every(&arm.velocities));
         let means = positions.windows(2).map(|pair| (pair[1] - pair[0]) / sigma);
-        let fastest = every(&arm.velocities).into_iter().chain(means).map(f64::abs).fold(0.0, f64::max);
+        let fastest = velocities.iter().copied().chain(means).map(f64::abs).fold(0.0, f64::max);
         let lowest = positions.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Self { limits, lowest, highest, fastest }
+        let samples = || (positions.iter().copied(), velocities.iter().copied());
+        let ((q, v), (more_q, more_v)) = (samples(), samples());
+        let hardest = [Peak::of_acceleration(q, v, sigma), Peak::of_jerk(more_q, more_v, sigma)];
+        Self { limits, lowest, highest, fastest, hardest }
     }
 
     /// How far the joint went from the middle of its range, in halves of it; `None` without a range.
@@ -81,14 +87,40 @@ impl Use {
         (self.limits.velocity.is_finite() && share.is_finite()).then_some(share)
     }
 
-    fn row(&self, joint: &ChainJoint) -> String {
+    /// The shares of the acceleration and jerk limits that are known.
+    fn hard_shares(&self) -> [Option<f64>; 2] {
+        let [acceleration, jerk] = self.hardest;
+        let pairs = [(acceleration, self.limits.acceleration), (jerk, self.limits.jerk)];
+        pairs.map(|(peak, limit)| {
+            Some(peak.certain / limit).filter(|share| limit.is_finite() && share.is_finite())
+        })
+    }
+
+    fn shares(&self) -> impl Iterator<Item = f64> {
+        let [acceleration, jerk] = self.hard_shares();
+        [self.range_share(), self.velocity_share(), acceleration, jerk].into_iter().flatten()
+    }
+
+    fn row(&self, joint: &ChainJoint, shows_hardest: bool) -> String {
         let unit = if joint.kind.is_rotation() { "rad" } else { "m" };
+        let mut cells = vec![self.range_cell(unit), self.velocity_cell(unit)];
+        if shows_hardest {
+            cells.extend(self.hard_cells(unit));
+        }
         format!(
-            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td></tr>",
+            "<tr><th scope=\"row\">{}</th>{}</tr>",
             escaped(&joint.name),
-            self.range_cell(unit),
-            self.velocity_cell(unit)
+            cells.iter().fold(String::new(), |all, cell| all + "<td>" + cell + "</td>")
         )
+    }
+
+    fn hard_cells(&self, unit: &str) -> [String; 2] {
+        let shares = self.hard_shares();
+        let limits = [self.limits.acceleration, self.limits.jerk];
+        std::array::from_fn(|k| {
+            let peak = self.hardest[k].value.abs();
+            share_cell(shares[k], &format!("{} {unit}/s{}", plain(peak), ["\u{b2}", "\u{b3}"][k]), limits[k])
+        })
     }
 
     fn range_cell(&self, unit: &str) -> String {
@@ -114,18 +146,21 @@ impl Use {
 
     fn velocity_cell(&self, unit: &str) -> String {
         let went = format!("{} {unit}/s", plain(self.fastest));
-        let Some(share) = self.velocity_share() else {
-            return format!("{went}<small>no limit known</small>");
-        };
-        let closeness = Closeness::of(share);
-        format!(
-            "{}{went}{}<small>{:.0} % of {}</small>",
-            bar(0.0, 100.0 * share, closeness),
-            closeness.mark(),
-            100.0 * share,
-            plain(self.limits.velocity)
-        )
+        share_cell(self.velocity_share(), &went, self.limits.velocity)
     }
+}
+
+/// What was used of a limit in either direction.
+fn share_cell(share: Option<f64>, went: &str, limit: f64) -> String {
+    let Some(share) = share else { return format!("{went}<small>no limit known</small>") };
+    let closeness = Closeness::of(share);
+    format!(
+        "{}{went}{}<small>{:.0} % of {}</small>",
+        bar(0.0, 100.0 * share, closeness),
+        closeness.mark(),
+        100.0 * share,
+        plain(limit)
+    )
 }
 
 /// A bar from one to the other, in hundredths of a track.
@@ -146,19 +181,19 @@ fn bar(from: f64, to: f64, closeness: Closeness) -> String {
 pub(super) fn section(page: &PlanPage<'_>) -> String {
     let recording = page.recording;
     let mut html = format!("<p>{}</p>", sentence(counts(page)));
-    for (arm, staged) in recording.trajectory.arms.iter().zip(&recording.stage.arms) {
-        let rows = staged
-            .chain
-            .joints()
-            .iter()
-            .enumerate()
-            .map(|(index, joint)| Use::of(arm, index, joint.limits, page.plan.sigma).row(joint));
+    for ((arm, staged), uses) in recording.trajectory.arms.iter().zip(&recording.stage.arms).zip(uses(page)) {
+        // Most robots know nothing of accelerations.
+        let shows_hardest = uses.iter().any(|joint| joint.hard_shares().iter().any(Option::is_some));
+        let rows =
+            staged.chain.joints().iter().zip(&uses).map(|(joint, used)| used.row(joint, shows_hardest));
+        let more =
+            if shows_hardest { "<th scope=\"col\">acceleration</th><th scope=\"col\">jerk</th>" } else { "" };
         // Writing to a String can not fail.
         let _ = write!(
             html,
             "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Limits of {name}\"><table \
              class=\"limits\"><caption>{name}</caption><thead><tr><th scope=\"col\">joint</th><th \
-             scope=\"col\">positions</th><th scope=\"col\">fastest</th></tr></thead><tbody>{rows}</tbody></table></div>",
+             scope=\"col\">positions</th><th scope=\"col\">fastest</th>{more}</tr></thead><tbody>{rows}</tbody></table></div>",
             name = escaped(&arm.name),
             rows = rows.collect::<String>()
         );
@@ -166,15 +201,20 @@ pub(super) fn section(page: &PlanPage<'_>) -> String {
     html
 }
 
+/// What the joints of every arm did.
+fn uses(page: &PlanPage<'_>) -> Vec<Vec<Use>> {
+    let arms = page.recording.trajectory.arms.iter().zip(&page.recording.stage.arms);
+    arms.map(|(arm, staged)| {
+        let joints = staged.chain.joints().iter().enumerate();
+        joints.map(|(index, joint)| Use::of(arm, index, joint.limits, page.plan.sigma)).collect()
+    })
+    .collect()
+}
+
 /// How many limits were crossed, and how many came close without it.
 fn counts(page: &PlanPage<'_>) -> (usize, usize) {
-    let recording = page.recording;
-    let arms = recording.trajectory.arms.iter().zip(&recording.stage.arms);
-    let joints = arms.flat_map(|(arm, staged)| {
-        let joints = staged.chain.joints().iter().enumerate();
-        joints.map(|(index, joint)| Use::of(arm, index, joint.limits, page.plan.sigma))
-    });
-    let shares = joints.flat_map(|joint| [joint.range_share(), joint.velocity_share()]).flatten();
+    let joints = uses(page).into_iter().flatten();
+    let shares = joints.flat_map(|joint| joint.shares().collect::<Vec<_>>());
     shares.map(Closeness::of).fold((0, 0), |(crossed, close), closeness| match closeness {
         Closeness::Crossed => (crossed + 1, close),
         Closeness::Close => (crossed, close + 1),
@@ -212,8 +252,13 @@ mod tests {
 
     #[test]
     fn shares_count_from_the_middle_of_the_range_and_from_rest() {
-        let joint = used(&[0.0, 1.0, -0.5], Limits { lower: -1.0, upper: 3.0, velocity: 6.0 });
+        let joint =
+            used(&[0.0, 1.0, -0.5], Limits { lower: -1.0, upper: 3.0, velocity: 6.0, ..Limits::UNLIMITED });
         assert_eq!((joint.range_share(), joint.velocity_share()), (Some(0.75), Some(0.5)));
+        assert_eq!(joint.hard_shares(), [None, None]);
+        let limits = Limits { acceleration: 20.0, ..Limits::UNLIMITED };
+        let [Some(share), None] = used(&[0.0, 1.0, -0.5], limits).hard_shares() else { panic!() };
+        assert!((share - 0.5).abs() < 1e-9, "{share}");
         let closeness = [0.75, 0.95, 1.0, 1.1].map(Closeness::of);
         assert_eq!(closeness, [Closeness::Far, Closeness::Close, Closeness::Close, Closeness::Crossed]);
     }
@@ -222,7 +267,7 @@ mod tests {
     fn joints_without_limits_or_samples_have_no_share() {
         let free = used(&[0.0, 1.0], Limits::UNLIMITED);
         assert_eq!((free.range_share(), free.velocity_share()), (None, None));
-        let still = used(&[], Limits { lower: -1.0, upper: 3.0, velocity: 6.0 });
+        let still = used(&[], Limits { lower: -1.0, upper: 3.0, velocity: 6.0, ..Limits::UNLIMITED });
         assert_eq!(still.range_share(), None);
         assert!(still.range_cell("rad").contains("nothing recorded"));
     }
