@@ -56,14 +56,15 @@ impl Asked {
         let scenario = text.scenario()?;
         let stage = scenario.stage(text.folder()).map_err(|e| text.placed(e))?;
         let taker = |arm: Arm| {
-            let followers = robot_of(&stage, arm.name()).map_or_else(Vec::new, |robot| followers(&arm, robot));
+            let followers =
+                robot_of(&stage, arm.name()).map_or_else(Vec::new, |robot| followers(&arm, robot));
             Taker { arm, followers }
         };
         let arms = scenario.arms(text.folder()).map_err(|e| text.placed(e))?;
         let takers = arms.into_iter().map(taker).collect();
         let name = |task: &TaskSpec| format!("{} of {}", task.kind, task.arms.join(", "));
         let tasks = scenario.task.iter().map(name).collect();
-        Ok(Self { takers, stage, duration: Some(scenario.duration.0), tasks })
+        Ok(Self { takers, stage, duration: Some(scenario.duration.value()), tasks })
     }
 }
 
@@ -88,7 +89,8 @@ impl Against {
         let own = arguments.trajectory.join("scenario.toml");
         let folder = arguments.trajectory.is_dir().then_some(own.as_path());
         let scenario = arguments.scenario.as_deref().or(folder);
-        let Asked { takers, stage, duration, tasks } = scenario.map_or_else(|| Ok(Asked::nothing()), Asked::of)?;
+        let Asked { takers, stage, duration, tasks } =
+            scenario.map_or_else(|| Ok(Asked::nothing()), Asked::of)?;
         let robot = arguments.robot.robot.as_deref();
         let robot = robot.map(|name| Ok::<_, Failure>((name, export::robot(name)?))).transpose()?;
         let Shares { moved, absent } = share_out(&trajectory.arms, takers, robot.is_some())?;
@@ -128,7 +130,8 @@ impl Against {
             let figures = arm.inspect(times, &moved.limits, moved.interpolation);
             let error = course.and_then(|course| moved.worst_error(course, arm, times));
             failures.extend(sentences::of_arm(&arm.name, &figures, times));
-            failures.extend(moved.straying.iter().map(|straying| sentences::of_follower(&arm.name, straying)));
+            failures
+                .extend(moved.straying.iter().map(|straying| sentences::of_follower(&arm.name, straying)));
             failures.extend(error.and_then(|error| sentences::of_error(&arm.name, error, max_error)));
             arms.push(ArmChecked::new(&arm.name, &figures, &moved.straying, moved.interpolation, error));
         }
@@ -148,8 +151,9 @@ impl Against {
     /// The part of the paths that is done, where there are paths.
     fn course(&self) -> Option<Course> {
         let arms = self.trajectory.arms.iter().zip(&self.moved);
-        let paths: Vec<(ArmTrajectory, &Arm)> =
-            arms.filter_map(|(arm, moved)| moved.path.as_ref().map(|path| (own_joints(arm, path), path))).collect();
+        let paths: Vec<(ArmTrajectory, &Arm)> = arms
+            .filter_map(|(arm, moved)| moved.path.as_ref().map(|path| (own_joints(arm, path), path)))
+            .collect();
         let duration = self.duration.filter(|_| !paths.is_empty())?;
         Some(Course::of(&self.trajectory.times, &paths, duration))
     }

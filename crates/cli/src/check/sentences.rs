@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use kinstep_files::trajectory::{Course, Crossing, Disagreement, JointFigures, Jump, Met, Rest, Straying, TimeFigures};
+use kinstep_files::trajectory::{
+    Course, Crossing, Disagreement, JointFigures, Jump, Met, Rest, Straying, TimeFigures,
+};
 use kinstep_report::short;
 
 /// The fraction of a whole turn within which a jump is one.
@@ -97,7 +99,8 @@ fn of_jump(joint: &str, jump: Jump) -> String {
 }
 
 fn of_disagreement(joint: &str, found: Disagreement) -> String {
-    let (size, declared, of_positions) = (short(found.size()), short(found.declared), short(found.of_positions));
+    let (size, declared, of_positions) =
+        (short(found.size()), short(found.declared), short(found.of_positions));
     let t = moment(found.t);
     format!(
         "{joint}: the declared velocity differs by {size} from that of the positions at t = {t} s: {declared} and {of_positions}"

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::super::output::Show;
 use super::sentences::moment;
 use kinstep_files::trajectory::{
-    Course, Crossing, Disagreement, Interpolation, JointFigures, Met, Rest, Straying, TimeFigures,
+    Course, Crossing, Disagreement, Interpolation, JointFigures, Met, Straying, TimeFigures,
 };
 use kinstep_report::{Table, short};
 
@@ -260,7 +260,9 @@ impl Checked {
         if let Some(path) = &self.path {
             if path.origin != 0.0 {
                 let origin = moment(path.origin);
-                remarks.push(format!("time stamps begin elsewhere: {origin} s is taken for the path's beginning"));
+                remarks.push(format!(
+                    "time stamps begin elsewhere: {origin} s is taken for the path's beginning"
+                ));
             }
             if path.covered[1] > path.duration * (1.0 + 1e-6) {
                 let duration = moment(path.duration);
@@ -269,7 +271,12 @@ impl Checked {
         }
         for arm in &self.arms {
             if let (Some(error), Some(t)) = (arm.max_error, arm.max_error_at) {
-                remarks.push(format!("{}: worst task error {} at t = {} s", arm.name, short(error), moment(t)));
+                remarks.push(format!(
+                    "{}: worst task error {} at t = {} s",
+                    arm.name,
+                    short(error),
+                    moment(t)
+                ));
             }
             let mut kinds: Vec<&str> = arm.limits.undecided.iter().map(|undecided| undecided.kind).collect();
             kinds.sort_unstable();
@@ -286,7 +293,8 @@ impl Checked {
             }
         }
         remarks.extend(self.absent.iter().map(|arm| format!("{arm}: nothing of it moves here")));
-        let unchecked = |task: &String| format!("task {task}: not checked, tasks over several tips are not yet");
+        let unchecked =
+            |task: &String| format!("task {task}: not checked, tasks over several tips are not yet");
         remarks.extend(self.unchecked.iter().map(unchecked));
         remarks
     }

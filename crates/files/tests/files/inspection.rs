@@ -10,6 +10,9 @@ use proptest::prelude::*;
 /// How many random goals must be judged rightly, of each kind.
 const GOALS: u32 = 10_000;
 
+/// At how many places of a step its extremes are looked for.
+const PLACES: u32 = 40;
+
 /// The samples of one joint, and how a controller moves between them.
 #[derive(Clone, Debug)]
 struct Goal {
@@ -62,8 +65,8 @@ impl Goal {
             let h = self.times[n + 1] - self.times[n];
             let mut points = self.control_points(n);
             for extreme in &mut found {
-                for place in 0..=100 {
-                    let s = f64::from(place) / 100.0;
+                for place in 0..=PLACES {
+                    let s = f64::from(place) / f64::from(PLACES);
                     let value = casteljau(&points, s).abs();
                     if value > extreme[0] {
                         *extreme = [value, self.times[n] + s * h];
@@ -87,7 +90,10 @@ impl Goal {
 fn casteljau(points: &[f64], s: f64) -> f64 {
     let mut points = points.to_vec();
     while points.len() > 1 {
-        points = points.windows(2).map(|pair| pair[0] + s * (pair[1] - pair[0])).collect();
+        for n in 1..points.len() {
+            points[n - 1] += s * (points[n] - points[n - 1]);
+        }
+        points.pop();
     }
     points[0]
 }
@@ -109,16 +115,20 @@ fn stamps(gaps: &[f64]) -> Vec<f64> {
 /// Points as they are sent to controllers: from rest to rest, through some points at which nothing is declared, or the
 /// joint stops, or passes at some velocity and acceleration; with dwells; further apart than samples of a recording.
 fn sparse_goals() -> impl Strategy<Value = Goal> {
-    let point = (-2.0..2.0_f64, -1.0..1.0_f64, -2.0..2.0_f64, 0.06..3.0_f64, 0_u8..4);
+    let point = (-2.5..2.5_f64, -1.0..1.0_f64, -2.0..2.0_f64, 0.06..3.0_f64, 0_u8..4);
     (vec(point, 1..8), 0_u8..4).prop_map(|(points, declares)| {
         let gaps: Vec<f64> = points.iter().map(|point| point.3).collect();
-        let mut goal =
-            Goal { times: stamps(&gaps), positions: vec![0.3], velocities: vec![0.0], accelerations: vec![0.0] };
+        let mut goal = Goal {
+            times: stamps(&gaps),
+            positions: vec![0.3],
+            velocities: vec![0.0],
+            accelerations: vec![0.0],
+        };
         let last = points.len() - 1;
-        for (n, (q, v, a, _, kind)) in points.into_iter().enumerate() {
+        for (n, (slope, v, a, gap, kind)) in points.into_iter().enumerate() {
             let is_rest = n == last || kind < 2;
             let before = goal.positions[n];
-            goal.positions.push(if kind == 0 { before } else { q });
+            goal.positions.push(if kind == 0 { before } else { before + slope * gap });
             goal.velocities.push(if is_rest { 0.0 } else { v });
             goal.accelerations.push(if is_rest { 0.0 } else { a });
         }
@@ -132,19 +142,21 @@ fn sparse_goals() -> impl Strategy<Value = Goal> {
 }
 
 /// A smooth motion from rest to rest with a dwell in the middle, sampled at any rate, exactly.
-fn profiles() -> impl Strategy<Value = Goal> {
-    (0.5..4.0_f64, 0.1..3.0_f64, 0.0..1.0_f64, 0.002..0.3_f64, 0_u8..3).prop_map(
+fn profiles(gap: std::ops::Range<f64>, declares: std::ops::Range<u8>) -> impl Strategy<Value = Goal> {
+    (0.5..4.0_f64, 0.1..3.0_f64, 0.0..1.0_f64, gap, declares).prop_map(
         |(duration, height, dwell, gap, declares)| {
             let whole = 2.0 * duration + dwell;
-            let count = (whole / gap).ceil().clamp(2.0, 200.0);
+            let count = (whole / gap).ceil().max(2.0);
             let times: Vec<f64> = (0..=count as usize).map(|n| whole * n as f64 / count).collect();
             // sin^2 up to the height, the dwell, and down again.
             let at = |t: f64| {
                 let tau = if t < duration { t } else { (t - dwell).max(duration) };
-                let (rate, phase) = (std::f64::consts::PI / duration, std::f64::consts::PI * tau / duration / 2.0);
+                let (rate, phase) =
+                    (std::f64::consts::PI / duration, std::f64::consts::PI * tau / duration / 2.0);
                 let is_still = t >= duration && t <= duration + dwell;
                 let velocity = if is_still { 0.0 } else { height * rate / 2.0 * (2.0 * phase).sin() };
-                let acceleration = if is_still { 0.0 } else { height * rate * rate / 2.0 * (2.0 * phase).cos() };
+                let acceleration =
+                    if is_still { 0.0 } else { height * rate * rate / 2.0 * (2.0 * phase).cos() };
                 [height * phase.sin().powi(2), velocity, acceleration]
             };
             let values = |order: usize| -> Vec<f64> {
@@ -161,14 +173,23 @@ fn profiles() -> impl Strategy<Value = Goal> {
             if declares > 1 {
                 goal_accelerations = values(2);
             }
-            Goal { positions: values(0), times, velocities: goal_velocities, accelerations: goal_accelerations }
+            Goal {
+                positions: values(0),
+                times,
+                velocities: goal_velocities,
+                accelerations: goal_accelerations,
+            }
         },
     )
 }
 
 /// Nothing is said against a goal, in limits that it keeps.
-fn assert_sound(goal: &Goal) -> Result<(), TestCaseError> {
-    let found = goal.inspected(limits(goal.extremes().map(|[size, _]| size * (1.0 + 1e-3) + 1e-9)));
+fn assert_sound(goal: &Goal, extremes: &[[f64; 2]; 3]) -> Result<(), TestCaseError> {
+    let mut sizes = extremes.map(|[size, _]| size * (1.0 + 1e-2) + 1e-9);
+    if goal.interpolation() == Interpolation::Linear {
+        sizes[2] = f64::INFINITY;
+    }
+    let found = goal.inspected(limits(sizes));
     prop_assert!(found.crossings.is_empty(), "{:?}", found.crossings);
     prop_assert!(found.jumps.is_empty(), "{:?}", found.jumps);
     prop_assert!(found.disagreements.iter().flatten().next().is_none(), "{:?}", found.disagreements);
@@ -180,8 +201,7 @@ fn assert_sound(goal: &Goal) -> Result<(), TestCaseError> {
 
 /// Every limit that is a little too small is found crossed, no later than where it was seen to be, and not earlier than
 /// anything near it.
-fn assert_found(goal: &Goal) -> Result<(), TestCaseError> {
-    let extremes = goal.extremes();
+fn assert_found(goal: &Goal, extremes: &[[f64; 2]; 3]) -> Result<(), TestCaseError> {
     let kinds = [LimitKind::Position, LimitKind::Velocity, LimitKind::Acceleration];
     let is_linear = goal.interpolation() == Interpolation::Linear;
     for (order, kind) in kinds.into_iter().enumerate().take(if is_linear { 2 } else { 3 }) {
@@ -197,7 +217,12 @@ fn assert_found(goal: &Goal) -> Result<(), TestCaseError> {
         };
         prop_assert_eq!(crossing.kind, kind);
         prop_assert!(crossing.first <= t + 1e-9, "{} after {}", crossing.first, t);
-        prop_assert!(crossing.worst.value.abs() >= size * (1.0 - 1e-9), "{} of {}", crossing.worst.value, size);
+        prop_assert!(
+            crossing.worst.value.abs() >= size * (1.0 - 1e-9),
+            "{} of {}",
+            crossing.worst.value,
+            size
+        );
         let whole = goal.times[goal.times.len() - 1];
         prop_assert!(crossing.outside.is_some_and(|outside| outside >= 0.0 && outside <= whole + 1e-9));
     }
@@ -209,8 +234,9 @@ proptest! {
 
     #[test]
     fn sound_sparse_goals_raise_no_alarm_and_no_crossing_is_missed(goal in sparse_goals()) {
-        assert_sound(&goal)?;
-        assert_found(&goal)?;
+        let extremes = goal.extremes();
+        assert_sound(&goal, &extremes)?;
+        assert_found(&goal, &extremes)?;
     }
 }
 
@@ -218,24 +244,27 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1_000))]
 
     #[test]
-    fn sampled_profiles_raise_no_alarm_and_no_crossing_is_missed(goal in profiles()) {
-        assert_sound(&goal)?;
-        assert_found(&goal)?;
+    fn sampled_profiles_raise_no_alarm_and_no_crossing_is_missed(goal in profiles(0.005..0.3, 0..3)) {
+        let extremes = goal.extremes();
+        assert_sound(&goal, &extremes)?;
+        assert_found(&goal, &extremes)?;
     }
 
     /// Velocities that are not those of the positions are found where samples are close, and a jump of any size that matters.
     #[test]
     fn wrong_velocities_and_jumps_are_found_in_recordings(
-        goal in profiles(), wrong in prop_oneof![-1.0..0.7_f64, 1.3..3.0_f64], jump in 0.2..2.0_f64,
+        goal in profiles(0.005..0.02, 0..3), wrong in prop_oneof![-1.0..0.7_f64, 1.3..3.0_f64], jump in 0.2..2.0_f64,
     ) {
-        prop_assume!(goal.times[1] < 0.02 && goal.times.len() > 40);
+        let jump = jump + 12.0 * goal.extremes()[1][0] * goal.times[1];
         let mut spoilt = goal.clone();
         spoilt.positions.iter_mut().skip(goal.times.len() / 3).for_each(|q| *q += jump);
         let found = spoilt.inspected(Limits::UNLIMITED);
         prop_assert_eq!(found.jumps.len(), 1, "{:?}", found.jumps);
-        prop_assert!((found.jumps[0].distance - jump).abs() < 0.3);
+        prop_assert!((found.jumps[0].distance / jump - 1.0).abs() < 0.1);
         prop_assert_eq!(found.jumps[0].t, goal.times[goal.times.len() / 3]);
-        prop_assume!(!goal.velocities.is_empty());
+        if goal.velocities.is_empty() {
+            return Ok(());
+        }
         let mut spoilt = goal.clone();
         spoilt.velocities.iter_mut().for_each(|v| *v *= wrong);
         let found = spoilt.inspected(Limits::UNLIMITED).disagreements;

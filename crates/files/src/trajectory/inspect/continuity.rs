@@ -68,7 +68,8 @@ pub(super) fn jumps(knots: &Knots<'_>) -> Vec<Jump> {
             acceleration = if is_slower { acceleration.min(needed) } else { 0.0_f64.min(acceleration) };
         }
         let (distance, duration) = (knots.positions[n + 1] - knots.positions[n], knots.gap(n));
-        let is_jump = distance.abs() > SMALLEST_JUMP && acceleration.is_finite() && acceleration > BEYOND_ARMS;
+        let is_jump =
+            distance.abs() > SMALLEST_JUMP && acceleration.is_finite() && acceleration > BEYOND_ARMS;
         is_jump.then(|| Jump { t: knots.times[n + 1], distance, duration, acceleration })
     };
     (0..slopes.len()).filter_map(jump).take(MOST).collect()
@@ -87,7 +88,8 @@ pub(super) fn disagreements(knots: &Knots<'_>) -> Option<Vec<Disagreement>> {
     }
     let slopes: Vec<f64> = (0..last).map(|n| knots.slope(n)).collect();
     let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
-    let fastest = largest(&mut knots.velocities.iter().copied()).max(largest(&mut parabolas(knots, &slopes, &places)));
+    let fastest =
+        largest(&mut knots.velocities.iter().copied()).max(largest(&mut parabolas(knots, &slopes, &places)));
     let allowed = DISAGREEMENT * fastest + NOISE * noise(&knots.velocities) + REST;
     let rounding = 4.0 * resolution(&knots.positions);
     let found = places.iter().zip(parabolas(knots, &slopes, &places)).filter_map(|(&n, of_positions)| {
@@ -103,7 +105,11 @@ pub(super) fn disagreements(knots: &Knots<'_>) -> Option<Vec<Disagreement>> {
 }
 
 /// The slope at each of these samples of the parabola through it and its two neighbours.
-fn parabolas<'k>(knots: &'k Knots<'_>, slopes: &'k [f64], places: &'k [usize]) -> impl Iterator<Item = f64> + 'k {
+fn parabolas<'k>(
+    knots: &'k Knots<'_>,
+    slopes: &'k [f64],
+    places: &'k [usize],
+) -> impl Iterator<Item = f64> + 'k {
     places.iter().map(|&n| {
         let (before, after) = (knots.gap(n - 1), knots.gap(n));
         (slopes[n - 1] * after + slopes[n] * before) / (before + after)

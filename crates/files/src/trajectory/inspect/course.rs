@@ -54,7 +54,13 @@ impl Course {
 
     /// Returns the worst norm of the task error (m and rad together) while the path lasts, and its time stamp \[s\]: at samples,
     /// and between those that are further apart than a thousandth of the path.
-    pub fn worst_error(&self, arm: &ArmTrajectory, path: &Arm, times: &[f64], interpolation: Interpolation) -> Met {
+    pub fn worst_error(
+        &self,
+        arm: &ArmTrajectory,
+        path: &Arm,
+        times: &[f64],
+        interpolation: Interpolation,
+    ) -> Met {
         let joints = 0..arm.joints.len();
         let knots: Vec<Knots<'_>> = joints.map(|joint| Knots::of(arm, joint, times)).collect();
         let mut scratch = path.chain().scratch();
@@ -70,7 +76,8 @@ impl Course {
             let gap = if n + 1 < times.len() { times[n + 1] - times[n] } else { 0.0 };
             let parts = (gap * PARTS / self.duration).ceil().min(PARTS);
             if parts > 1.0 {
-                let segments: Vec<_> = knots.iter().map(|knots| knots.segments(interpolation, n)[0]).collect();
+                let segments: Vec<_> =
+                    knots.iter().map(|knots| knots.segments(interpolation, n)[0]).collect();
                 for part in 1..parts as usize {
                     let s = part as f64 / parts;
                     let q: Vec<f64> = segments.iter().map(|segment| segment.value(s)).collect();
@@ -89,7 +96,8 @@ impl Course {
     fn worst_at_samples(&self, arm: &ArmTrajectory, path: &Arm, times: &[f64]) -> f64 {
         let mut scratch = path.chain().scratch();
         let lasting = times.iter().enumerate().filter(|(_, t)| self.lasts(**t));
-        let errors = lasting.map(|(n, t)| path.task_error(t - self.origin, arm.position(n), &mut scratch).norm());
+        let errors =
+            lasting.map(|(n, t)| path.task_error(t - self.origin, arm.position(n), &mut scratch).norm());
         errors.fold(0.0, |worst, error| if error <= worst { worst } else { error })
     }
 }

@@ -63,8 +63,10 @@ impl Beyond {
         let ends = [0.0, 1.0].map(|s| (at(s), slacks[0]));
         let between = segment.turning_points().into_iter().map(|s| (at(s), slacks[1]));
         let beyond = ends.into_iter().chain(between).filter(|(met, slack)| self.excess(met.value) > *slack);
-        let furthest = beyond.max_by(|a, b| self.excess(a.0.value).total_cmp(&self.excess(b.0.value)));
-        if let Some((worst, _)) = furthest {
+        let further = |a: (Met, f64), b: (Met, f64)| {
+            if self.excess(b.0.value) > self.excess(a.0.value) { b } else { a }
+        };
+        if let Some((worst, _)) = beyond.reduce(further) {
             let (first, outside) = self.outside(segment);
             self.note(first.unwrap_or(worst.t), outside, worst);
         }
@@ -72,7 +74,12 @@ impl Beyond {
 
     /// When the step is first beyond the limits, and for how long.
     fn outside(&self, segment: &Segment) -> (Option<f64>, f64) {
-        let mut places: Vec<f64> = self.limits.iter().filter(|limit| limit.is_finite()).flat_map(|&limit| segment.passes(limit)).collect();
+        let mut places: Vec<f64> = self
+            .limits
+            .iter()
+            .filter(|limit| limit.is_finite())
+            .flat_map(|&limit| segment.passes(limit))
+            .collect();
         places.extend([0.0, 1.0]);
         places.sort_by(f64::total_cmp);
         let is_outside = |pair: &&[f64]| self.excess(segment.value(f64::midpoint(pair[0], pair[1]))) > 0.0;

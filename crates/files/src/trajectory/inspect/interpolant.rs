@@ -58,7 +58,8 @@ pub(super) struct Knots<'t> {
 
 impl<'t> Knots<'t> {
     pub(super) fn of(arm: &ArmTrajectory, joint: usize, times: &'t [f64]) -> Self {
-        let of_joint = |values: &[f64]| values.iter().skip(joint).step_by(arm.joints.len()).copied().collect();
+        let of_joint =
+            |values: &[f64]| values.iter().skip(joint).step_by(arm.joints.len()).copied().collect();
         Self {
             times,
             positions: of_joint(&arm.positions),
@@ -113,7 +114,11 @@ impl<'t> Knots<'t> {
             Interpolation::Linear => c[1] = distance,
             Interpolation::Cubic => {
                 let [from, to] = both(&self.velocities).map(|velocity| h * velocity);
-                c[1..4].copy_from_slice(&[from, 3.0 * distance - 2.0 * from - to, from + to - 2.0 * distance]);
+                c[1..4].copy_from_slice(&[
+                    from,
+                    3.0 * distance - 2.0 * from - to,
+                    from + to - 2.0 * distance,
+                ]);
             }
             Interpolation::Quintic => {
                 let [from, to] = both(&self.velocities).map(|velocity| h * velocity);

@@ -167,7 +167,8 @@ impl<'k> Inspection<'k> {
             largest(met, knots.times[0])
         };
         let slopes = (0..knots.steps()).map(|n| Met { value: knots.slope(n), t: knots.times[n + 1] });
-        let crossings: Vec<Crossing> = self.beyond.iter().filter_map(|beyond| beyond.crossing(joint)).collect();
+        let crossings: Vec<Crossing> =
+            self.beyond.iter().filter_map(|beyond| beyond.crossing(joint)).collect();
         JointFigures {
             joint: joint.to_owned(),
             positions: self.positions,

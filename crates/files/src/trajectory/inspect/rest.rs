@@ -37,9 +37,8 @@ impl Rest {
 /// motion that would have to begin much harder than it goes on.
 pub(super) fn rests(knots: &Knots<'_>) -> [Rest; 2] {
     if let [first, .., last] = knots.velocities[..] {
-        return [first, last].map(|velocity| {
-            if velocity.abs() <= REST { Rest::AtRest } else { Rest::InMotion(velocity) }
-        });
+        return [first, last]
+            .map(|velocity| if velocity.abs() <= REST { Rest::AtRest } else { Rest::InMotion(velocity) });
     }
     let elsewhere = knots.hardest();
     let rounding = resolution(&knots.positions);

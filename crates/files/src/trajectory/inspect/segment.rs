@@ -64,7 +64,8 @@ impl Segment {
         ];
         let mut scaled = self.coefficients;
         scaled.iter_mut().zip(BINOMIAL[MOST - 1]).for_each(|(a, whole)| *a /= whole);
-        let (mut least, mut largest) = (self.coefficients[0].min(self.end), self.coefficients[0].max(self.end));
+        let (mut least, mut largest) =
+            (self.coefficients[0].min(self.end), self.coefficients[0].max(self.end));
         for row in &BINOMIAL[1..MOST - 1] {
             let value: f64 = row.iter().zip(&scaled).map(|(binomial, a)| binomial * a).sum();
             (least, largest) = (least.min(value), largest.max(value));
@@ -100,7 +101,8 @@ fn derivative(coefficients: &[f64; MOST]) -> [f64; MOST] {
 /// The places between 0 and 1 at which a polynomial changes its sign, in rising order: between two neighbouring roots of its
 /// derivative it is monotone and has one at most.
 fn roots(coefficients: &[f64; MOST]) -> Vec<f64> {
-    let Some(degree) = coefficients.iter().rposition(|&coefficient| coefficient != 0.0).filter(|&d| d > 0) else {
+    let Some(degree) = coefficients.iter().rposition(|&coefficient| coefficient != 0.0).filter(|&d| d > 0)
+    else {
         return Vec::new();
     };
     if degree == 1 {

@@ -48,11 +48,13 @@ impl TimeFigures {
 fn repeated(trajectory: &Trajectory) -> Option<(usize, f64)> {
     let times = &trajectory.times;
     let same = |n: usize| trajectory.arms.iter().all(|arm| arm.position(n) == arm.position(n - 1));
-    let still: Vec<usize> = (1..times.len()).filter(|&n| times[n] - times[n - 1] <= CLOSE && same(n)).collect();
+    let still: Vec<usize> =
+        (1..times.len()).filter(|&n| times[n] - times[n - 1] <= CLOSE && same(n)).collect();
     if still.is_empty() {
         return None;
     }
-    let is_stalled: Vec<Box<dyn Fn(usize) -> bool>> = trajectory.arms.iter().flat_map(|arm| stalls(arm, times)).collect();
+    let is_stalled: Vec<Box<dyn Fn(usize) -> bool>> =
+        trajectory.arms.iter().flat_map(|arm| stalls(arm, times)).collect();
     let mut found = still.into_iter().filter(|&n| is_stalled.iter().any(|is_stalled| is_stalled(n)));
     let first = found.next()?;
     Some((1 + found.count(), times[first]))
