@@ -1,6 +1,7 @@
 //! The command line, tested by running it.
 
 mod bad_scenarios;
+mod checks;
 mod exports;
 mod files;
 mod formula;
