@@ -158,7 +158,7 @@ mod tests {
             for (interpolation, degree) in Interpolation::ALL.into_iter().zip([1, 3, 5]) {
                 let derived = |order: usize, t: f64| -> f64 {
                     let factor = |power: usize| (0..order).map(|k| (power - k) as f64).product::<f64>();
-                    (order..=degree).map(|power| c[power] * factor(power) * t.powi((power - order) as i32)).sum()
+                    (order..=degree).map(|power| c[power] * factor(power) * t.powf((power - order) as f64)).sum()
                 };
                 let times = [t, t + gap];
                 let at = |order: usize| times.map(|t| derived(order, t)).to_vec();

@@ -147,14 +147,14 @@ impl<'k> Inspection<'k> {
         let knots = self.knots;
         let resolution = resolution(&knots.positions);
         let mut values = knots.positions.clone();
-        for order in 1..=3_usize {
+        for (order, power) in (1..=3_usize).zip(1..) {
             values = knots.differences(&values, order);
             for (n, &value) in values.iter().enumerate().filter(|_| order > 1) {
                 let (start, end) = (knots.times[n], knots.times[n + order]);
                 let met = Met { value, t: f64::midpoint(start, end) };
                 self.largest[order - 1].larger(value, met.t);
                 let gap = (n..n + order).map(|n| knots.gap(n)).fold(f64::INFINITY, f64::min);
-                let slack = self.slacks(n)[order] + ROUNDING[order] * resolution / gap.powi(order as i32);
+                let slack = self.slacks(n)[order] + ROUNDING[order] * resolution / gap.powi(power);
                 self.beyond[order].take_bound(met, start, slack);
             }
         }

@@ -46,7 +46,9 @@ impl Segment {
     /// The derivative by time.
     pub(super) fn derivative(&self) -> Self {
         let mut coefficients = derivative(&self.coefficients);
-        coefficients.iter_mut().for_each(|coefficient| *coefficient /= self.duration);
+        for coefficient in &mut coefficients {
+            *coefficient /= self.duration;
+        }
         Self::new([self.start, self.duration], coefficients)
     }
 

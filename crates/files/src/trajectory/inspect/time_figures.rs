@@ -53,41 +53,54 @@ fn repeated(trajectory: &Trajectory) -> Option<(usize, f64)> {
     if still.is_empty() {
         return None;
     }
-    let is_stalled: Vec<Box<dyn Fn(usize) -> bool>> =
-        trajectory.arms.iter().flat_map(|arm| stalls(arm, times)).collect();
-    let mut found = still.into_iter().filter(|&n| is_stalled.iter().any(|is_stalled| is_stalled(n)));
+    let joints: Vec<Passing<'_>> = trajectory.arms.iter().flat_map(|arm| passing(arm, times)).collect();
+    let mut found = still.into_iter().filter(|&n| joints.iter().any(|joint| joint.passes(n)));
     let first = found.next()?;
     Some((1 + found.count(), times[first]))
 }
 
-/// For every joint, whether it moves through a sample that repeats the one before.
-fn stalls<'t>(arm: &ArmTrajectory, times: &'t [f64]) -> Vec<Box<dyn Fn(usize) -> bool + 't>> {
-    let joint = |joint: usize| -> Box<dyn Fn(usize) -> bool + 't> {
+/// What tells whether a joint moves through a sample that repeats the one before.
+struct Passing<'t> {
+    knots: Knots<'t>,
+    /// The least declared velocity that is a motion.
+    least: f64,
+    /// The hardest acceleration elsewhere, where no velocities are declared.
+    hardest: f64,
+    /// The shortest step that is more than rounding.
+    rounding: f64,
+}
+
+fn passing<'t>(arm: &ArmTrajectory, times: &'t [f64]) -> Vec<Passing<'t>> {
+    let joint = |joint: usize| {
         let knots = Knots::of(arm, joint, times);
-        if !knots.velocities.is_empty() {
-            let fastest = knots.velocities.iter().map(|velocity| velocity.abs()).fold(0.0, f64::max);
-            let least = REST.max(MOVING * fastest);
-            return Box::new(move |n| is_declared(&knots.velocities[n - 1..=n], least));
-        }
-        let (hardest, rounding) = (hardest(&knots), 4.0 * resolution(&knots.positions));
-        Box::new(move |n| is_passed(&knots, n, hardest, rounding))
+        let fastest = knots.velocities.iter().map(|velocity| velocity.abs()).fold(0.0, f64::max);
+        let rounding = 4.0 * resolution(&knots.positions);
+        Passing { least: REST.max(MOVING * fastest), hardest: hardest(&knots), rounding, knots }
     };
     (0..arm.joints.len()).map(joint).collect()
 }
 
-/// Declared velocities that take the joint through a place and back to it in one step.
-fn is_declared(velocities: &[f64], least: f64) -> bool {
-    velocities.iter().all(|&v| v > least) || velocities.iter().all(|&v| v < -least)
-}
-
-/// A joint that moves on as before after it stood still for one sample, harder than it does anything else.
-fn is_passed(knots: &Knots<'_>, n: usize, hardest: f64, rounding: f64) -> bool {
-    if n < 2 || n >= knots.steps() {
-        return false;
+impl Passing<'_> {
+    /// Whether the joint passes through sample `n`, which repeats the one before.
+    fn passes(&self, n: usize) -> bool {
+        if self.knots.velocities.is_empty() { self.goes_on(n) } else { self.loops(n) }
     }
-    let (before, after, gap) = (knots.slope(n - 2), knots.slope(n), knots.gap(n - 1));
-    let slower = before.abs().min(after.abs());
-    before * after > 0.0 && slower * gap > rounding && slower / gap > STALL * hardest
+
+    /// Whether declared velocities take the joint away from its place and back to it in one step.
+    fn loops(&self, n: usize) -> bool {
+        let around = &self.knots.velocities[n - 1..=n];
+        around.iter().all(|&v| v > self.least) || around.iter().all(|&v| v < -self.least)
+    }
+
+    /// Whether the joint moves on as before after it stood still for one sample, harder than it does anything else.
+    fn goes_on(&self, n: usize) -> bool {
+        if n < 2 || n >= self.knots.steps() {
+            return false;
+        }
+        let (before, after, gap) = (self.knots.slope(n - 2), self.knots.slope(n), self.knots.gap(n - 1));
+        let slower = before.abs().min(after.abs());
+        before * after > 0.0 && slower * gap > self.rounding && slower / gap > STALL * self.hardest
+    }
 }
 
 /// The hardest acceleration of a joint, with steps left out that repeat a position.
