@@ -329,3 +329,41 @@ proptest! {
 fn robot(case: &TreeCase) -> Robot {
     case.robot().expect("the strategy makes sound robots")
 }
+
+/// What steps at samples is decided only where it must be crossed.
+#[test]
+fn limits_that_an_interpolation_does_not_decide_are_named() {
+    let goal = |velocities: Vec<f64>, accelerations: Vec<f64>| Goal {
+        times: vec![0.0, 1.0, 2.0],
+        positions: vec![0.0, 1.0, 0.0],
+        velocities,
+        accelerations,
+    };
+    let allowed = |acceleration: f64, jerk: f64| Limits { acceleration, jerk, ..Limits::UNLIMITED };
+    let straight = goal(Vec::new(), Vec::new());
+    let found = straight.inspected(allowed(5.0, 100.0));
+    assert_eq!(
+        (found.crossings.len(), &found.undecided[..]),
+        (0, &[LimitKind::Acceleration, LimitKind::Jerk][..])
+    );
+    // Any smooth motion from 0 to 1 and back in two seconds decelerates by 2 somewhere.
+    let found = straight.inspected(allowed(1.9, 100.0));
+    let [crossing] = &found.crossings[..] else { panic!("{:?}", found.crossings) };
+    assert_eq!(
+        (crossing.kind, crossing.worst.value, crossing.outside),
+        (LimitKind::Acceleration, -2.0, None)
+    );
+    assert_eq!(found.undecided, [LimitKind::Jerk]);
+    // 6 / h^2 at the ends of a cubic from rest to rest, 12 / h^3 between them.
+    let cubic = goal(vec![0.0; 3], Vec::new());
+    assert_eq!(cubic.inspected(allowed(6.0, 12.0)).undecided, [LimitKind::Jerk]);
+    let kinds =
+        |found: JointFigures| found.crossings.iter().map(|crossing| crossing.kind).collect::<Vec<_>>();
+    assert_eq!(kinds(cubic.inspected(allowed(5.9, 12.0))), [LimitKind::Acceleration]);
+    assert_eq!(kinds(cubic.inspected(allowed(6.0, 11.9))), [LimitKind::Jerk]);
+    // A quintic from rest to rest: 10 / sqrt(3) and 60.
+    let quintic = goal(vec![0.0; 3], vec![0.0; 3]);
+    let found = quintic.inspected(allowed(5.774, 60.1));
+    assert!(found.undecided.is_empty() && found.crossings.is_empty(), "{found:?}");
+    assert_eq!(kinds(quintic.inspected(allowed(5.773, 59.9))), [LimitKind::Acceleration, LimitKind::Jerk]);
+}

@@ -1,7 +1,9 @@
 //! How finely a file knows its values.
 
-/// The most decimals that count as a rounding.
-const DECIMALS: i32 = 9;
+/// How many decimals count as a rounding: fewer are round numbers that somebody chose, more are those of doubles.
+const DECIMALS: std::ops::RangeInclusive<i32> = 2..=9;
+/// The largest step of an encoder [rad or m].
+const COARSEST: f64 = 1e-2;
 /// How far from a whole multiple, as a fraction of it, a difference may be.
 const WHOLE: f64 = 0.01;
 
@@ -19,7 +21,8 @@ fn decimal(values: &[f64]) -> f64 {
             (scaled - scaled.round()).abs() <= 4.0 * f64::EPSILON * scaled.abs()
         })
     };
-    (0..=DECIMALS).find(is_rounded).map_or(0.0, |places| 10_f64.powi(-places))
+    let places = (0..=*DECIMALS.end()).find(is_rounded).filter(|places| DECIMALS.contains(places));
+    places.map_or(0.0, |places| 10_f64.powi(-places))
 }
 
 fn single(values: &[f64]) -> f64 {
@@ -33,7 +36,7 @@ fn encoder(values: &[f64]) -> f64 {
     let differences = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
     let step = differences().fold(f64::INFINITY, f64::min);
     let is_whole = |difference: f64| (difference / step - (difference / step).round()).abs() <= WHOLE;
-    let is_rounded = step.is_finite() && differences().nth(1).is_some() && differences().all(is_whole);
+    let is_rounded = step <= COARSEST && differences().nth(1).is_some() && differences().all(is_whole);
     if is_rounded { step } else { 0.0 }
 }
 
@@ -43,7 +46,7 @@ mod tests {
 
     #[test]
     fn decimals_singles_and_encoders_are_told_from_doubles() {
-        let smooth: Vec<f64> = (0..50).map(|n| (0.1 * f64::from(n)).sin()).collect();
+        let smooth: Vec<f64> = (0..500).map(|n| (0.01 * f64::from(n)).sin()).collect();
         assert_eq!(resolution(&smooth), 0.0);
         let rounded = |step: f64| -> Vec<f64> { smooth.iter().map(|q| (q / step).round() * step).collect() };
         assert_eq!(resolution(&smooth.iter().map(|q| (q * 1e4).round() / 1e4).collect::<Vec<_>>()), 1e-4);
