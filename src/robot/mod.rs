@@ -36,6 +36,7 @@ mod size;
 mod toml_table;
 mod tool;
 mod tree;
+mod units;
 mod urdf;
 mod visual;
 
@@ -53,6 +54,7 @@ pub use read_error::ReadError;
 pub use size::unbelievable;
 pub use tool::ToolError;
 pub use tree::{TreeRow, TreeRows};
+pub use units::{degrees_suspected, millimetres_suspected};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 
