@@ -39,6 +39,7 @@ mod tree;
 mod units;
 mod urdf;
 mod visual;
+mod with_limits;
 
 pub use calibration::{Calibration, CalibrationError, JointCorrection};
 pub use chain::{Chain, ChainJoint, LimitViolation};
@@ -57,5 +58,6 @@ pub use tree::{TreeRow, TreeRows};
 pub use units::{degrees_suspected, millimetres_suspected};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
+pub use with_limits::LimitsError;
 
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};

@@ -122,10 +122,9 @@ impl<'a> Outline<'a> {
         let path: Vec<&str> = self.open.iter().skip(1).map(|tag| tag.name).chain([name]).collect();
         match path[..] {
             _ if self.open.is_empty() => true,
-            ["link" | "joint"] => true,
+            [] | ["link" | "joint"] => true,
             ["joint", part] => JOINT_PARTS.contains(&part) || part.starts_with("xacro:"),
             [first, ..] => UNEXPANDED.contains(&first),
-            [] => true,
         }
     }
 
