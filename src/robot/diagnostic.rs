@@ -47,7 +47,12 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// Returns a finding of severity error at a line and a column, both counted from 1.
     pub fn error(line: usize, column: usize, message: impl Into<String>) -> Diagnostic {
-        Diagnostic { severity: Severity::Error, line, column, message: message.into() }
+        Self::new(Severity::Error, line, column, message)
+    }
+
+    /// Returns a finding of that severity at a line and a column, both counted from 1.
+    pub fn new(severity: Severity, line: usize, column: usize, message: impl Into<String>) -> Diagnostic {
+        Diagnostic { severity, line, column, message: message.into() }
     }
 }
 

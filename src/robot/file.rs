@@ -51,12 +51,14 @@ fn robot_of_urdf(path: &Path, bytes: &[u8], options: &UrdfOptions) -> Result<Rob
 
 fn robot_of_table(path: &Path, text: &str, options: &UrdfOptions) -> Result<Robot, ReadError> {
     let refuse = |error| ReadError::Dh { path: path.to_owned(), error };
-    let mut table = DhTable::from_toml(text).map_err(refuse)?;
+    let (mut table, found) = DhTable::from_toml_with_findings(text).map_err(refuse)?;
     if table.name.is_empty() {
         let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         table.name = options.name.clone().or(stem).unwrap_or_default();
     }
-    Robot::from_dh(&table).map_err(refuse)
+    let mut robot = Robot::from_dh(&table).map_err(refuse)?;
+    robot.diagnostics = found;
+    Ok(robot)
 }
 
 /// Returns the text where it is TOML: what begins with `<` is markup, whatever it is called.

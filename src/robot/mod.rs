@@ -36,8 +36,10 @@ mod size;
 mod toml_table;
 mod tool;
 mod tree;
+mod units;
 mod urdf;
 mod visual;
+mod with_limits;
 
 pub use calibration::{Calibration, CalibrationError, JointCorrection};
 pub use chain::{Chain, ChainJoint, LimitViolation};
@@ -53,7 +55,9 @@ pub use read_error::ReadError;
 pub use size::unbelievable;
 pub use tool::ToolError;
 pub use tree::{TreeRow, TreeRows};
+pub use units::{degrees_suspected, millimetres_suspected};
 pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
+pub use with_limits::LimitsError;
 
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};

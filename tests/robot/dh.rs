@@ -277,3 +277,23 @@ fn a_file_is_known_by_what_it_holds() {
     assert!(wrong.to_string().contains("wrong.toml:2:1: a table of a robot has no key `color`"), "{wrong}");
     assert_eq!(wrong.diagnostics().len(), 1);
 }
+
+#[test]
+fn degrees_and_millimetres_in_a_table_are_questioned() {
+    let folder = std::env::temp_dir().join(format!("kinstep-units-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let said = |rows: &str| {
+        let path = folder.join("arm.toml");
+        std::fs::write(&path, format!("convention = \"standard\"\njoint = [{rows}]\n")).unwrap();
+        let robot = Robot::from_file(&path, &kinstep::robot::UrdfOptions::default()).unwrap();
+        robot.diagnostics().iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let found = said("{ a = 400, alpha = 90, limits = [-180, 180] }");
+    let words = ["`a`: 400 m is long", "`alpha`: 90 looks like degrees", "`limits`: -180 looks like degrees"];
+    assert!(
+        found.len() == 3 && found.iter().zip(words).all(|(found, words)| found.contains(words)),
+        "{found:?}"
+    );
+    assert!(said("{ a = 0.4, alpha = \"pi/2\", limits = [-6.5, 6.5] }").is_empty());
+    std::fs::remove_dir_all(folder).unwrap();
+}

@@ -11,6 +11,7 @@ use super::results::{PageContext, Results};
 use super::shell::{option, quoted};
 use kinstep::math::number_text;
 use kinstep::planner::{Plan, PlanStatus, Planner};
+use kinstep::robot::names::printable;
 use kinstep_files::scenario::{FormulaRows, Real, Scenario, ScenarioText};
 use kinstep_report::{PlanFormat, PlanJson, PlanText, Suggestion, plan_details, suggestions};
 
@@ -38,6 +39,10 @@ pub(super) fn run(
     let mut plan = run_planner(planner);
     clock.done("planning");
     plan.warnings.extend(rows.warnings());
+    plan.warnings.extend(scenario.limit_findings(text.folder()));
+    if output.is_verbose() {
+        scenario.robot_findings(text.folder()).iter().for_each(|found| output.aside(&printable(found)));
+    }
     let names_formula = scenario.formula.is_some();
     // What is written down says what was run, whatever the default becomes later.
     scenario.formula.get_or_insert_with(|| plan.formula.clone());

@@ -15,7 +15,7 @@ use kinstep::robot::names::{printable, quote};
 use kinstep::robot::{
     Chain, ChainError, Diagnostic, ReadError, Robot, Severity, UrdfOptions, embedded, unbelievable,
 };
-use kinstep_files::scenario::{RobotSource, calibrated, evaluate, suggestion, tool_name};
+use kinstep_files::scenario::{RobotSource, calibrated, evaluate, limited, suggestion, tool_name};
 use kinstep_report::Table;
 use kinstep_report::figure::robot_figures;
 
@@ -47,6 +47,9 @@ pub(super) fn robot_words(file: &RobotFile) -> String {
     if let Some(calibration) = &file.calibration {
         words += &option("--calibration", &calibration.display().to_string());
     }
+    if let Some(limits) = &file.limits {
+        words += &option("--limits", &limits.display().to_string());
+    }
     file.lock.iter().for_each(|lock| words += &option("--lock", lock));
     words
 }
@@ -64,11 +67,19 @@ pub(super) fn read(file: &RobotFile, output: &Output) -> Result<Robot, Failure> 
     edited(robot, file, output)
 }
 
-/// Returns the robot with the calibration and the locks that were asked for.
+/// Returns the robot with the calibration, the limits and the locks that were asked for.
 fn edited(robot: Robot, file: &RobotFile, output: &Output) -> Result<Robot, Failure> {
     let mut robot = robot;
     if let Some(calibration) = &file.calibration {
         robot = calibrated(&robot, calibration)?;
+    }
+    if let Some(limits) = &file.limits {
+        let (changed, notes) = limited(&robot, limits)?;
+        robot = changed;
+        let label = limits.display().to_string();
+        for note in notes {
+            output.aside(&printable(&format!("{label}:{note}")));
+        }
     }
     for lock in &file.lock {
         let (joint, values) = lock.split_once('=').ok_or_else(|| {

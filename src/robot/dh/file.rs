@@ -4,7 +4,7 @@ use super::table::{DhConvention, DhError, DhRow, DhTable, MAX_ROWS, Names};
 use crate::robot::names::{self, list, quote};
 use crate::robot::report::Report;
 use crate::robot::toml_table::{Entries, Value, read_toml, real, wrong_type};
-use crate::robot::{JointKind, Limits};
+use crate::robot::{Diagnostic, JointKind, Limits, degrees_suspected, millimetres_suspected};
 
 const KEYS: [&str; 9] =
     ["name", "base", "convention", "joint", "planar", "limits", "velocity", "acceleration", "jerk"];
@@ -26,8 +26,18 @@ impl DhTable {
     /// # Errors
     /// [`DhError::Text`] with everything that is wrong, by place.
     pub fn from_toml(text: &str) -> Result<DhTable, DhError> {
+        Self::from_toml_with_findings(text).map(|(table, _)| table)
+    }
+
+    /// Returns the table, and the doubts about it.
+    pub(in crate::robot) fn from_toml_with_findings(
+        text: &str,
+    ) -> Result<(DhTable, Vec<Diagnostic>), DhError> {
         let (table, found) = read_toml(text, read);
-        table.ok_or(DhError::Text(found))
+        match table {
+            Some(table) => Ok((table, found)),
+            None => Err(DhError::Text(found)),
+        }
     }
 }
 
@@ -185,7 +195,28 @@ fn row(table: &Entries<'_, '_>, index: usize, count: usize, report: &mut Report<
     if let Some((key, problem)) = row.problem() {
         report.error(table.place(key), format!("joint {}: {problem}", quote(&row.joint)));
     }
+    question_units(&row, table, report);
     Some(row)
+}
+
+/// Questions numbers that are likely to be in another unit.
+fn question_units(row: &DhRow, table: &Entries<'_, '_>, report: &mut Report<'_>) {
+    let doubts = [
+        ("alpha", degrees_suspected(&[row.alpha])),
+        ("theta", degrees_suspected(&[row.theta])),
+        ("a", millimetres_suspected(&[row.a])),
+        ("d", millimetres_suspected(&[row.d])),
+        (
+            "limits",
+            row.kind
+                .is_rotation()
+                .then(|| degrees_suspected(&[row.limits.lower, row.limits.upper]))
+                .flatten(),
+        ),
+    ];
+    for (key, doubt) in doubts.into_iter().filter_map(|(key, doubt)| Some((key, doubt?))) {
+        report.warning(table.place(key), format!("joint {}: `{key}`: {doubt}", quote(&row.joint)));
+    }
 }
 
 fn default_kind(table: &Entries<'_, '_>) -> JointKind {

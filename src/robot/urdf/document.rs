@@ -90,6 +90,16 @@ fn report_mending(outline: &Outline<'_>, report: &mut Report<'_>) {
             format!("a comment holds `--`, which XML forbids{more}; read all the same"),
         );
     }
+    if let Some(&first) = outline.leftovers.first() {
+        let more = match outline.leftovers.len() {
+            1 => String::new(),
+            n => format!(" (and {} more)", n - 1),
+        };
+        let cause = format!(
+            "xacro was left here unexpanded{more}, in a part that kinematics does not read; whatever it stands for is missing"
+        );
+        report.warning(first, cause);
+    }
     for (offset, prefix) in outline.undeclared() {
         let cause = format!(
             "the namespace prefix {} is declared nowhere (`xmlns:{prefix}`); what carries it is ignored",

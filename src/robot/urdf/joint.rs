@@ -13,9 +13,9 @@ use super::reader::Reader;
 use super::version::Version;
 use super::{MAX_JOINTS, UrdfOptions, number};
 use crate::math::number_text;
-use crate::robot::JointKind;
 use crate::robot::names::{list, quote};
 use crate::robot::report::Report;
+use crate::robot::{JointKind, degrees_suspected, millimetres_suspected};
 
 /// How far a vector's length may be from one before that is worth a note.
 const UNIT_TOLERANCE: f64 = 1e-3;
@@ -55,6 +55,7 @@ impl<'a, 'i> Reader<'_, 'a, 'i, '_> {
         self.origin();
         self.axis();
         limit::read(&mut self);
+        limit::note_soft_limits(&mut self);
         self.mimic();
         if matches!(self.joint.kind, Some(JointKind::Floating | JointKind::Planar | JointKind::Spherical)) {
             let kind = self.joint.kind.map_or("", JointKind::as_str);
@@ -146,6 +147,15 @@ impl<'a, 'i> Reader<'_, 'a, 'i, '_> {
             (_, None) => {}
         }
         let rpy = rpy.and_then(|rpy| self.sizes("origin", &rpy));
+        let numbers =
+            |text: &Option<String>| number::vector::<3>(text.as_deref().unwrap_or("")).unwrap_or_default();
+        let doubts =
+            [("rpy", degrees_suspected(&numbers(&rpy))), ("xyz", millimetres_suspected(&numbers(&xyz)))];
+        for (name, doubt) in doubts.into_iter().filter_map(|(name, doubt)| Some((name, doubt?))) {
+            let place =
+                element::attribute(node, name).map_or(element::offset(node), |found| found.range().start);
+            self.warn(place, &format!("`{name}` of `<origin>`: {doubt}"));
+        }
         let xyz = xyz.unwrap_or_else(|| "0 0 0".to_owned());
         let rpy = rpy.unwrap_or_else(|| "0 0 0".to_owned());
         let _ = write!(self.joint.values, "<origin xyz=\"{xyz}\" rpy=\"{rpy}\"/>");

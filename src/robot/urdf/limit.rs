@@ -10,6 +10,7 @@ use super::reader::Reader;
 use super::version::Version;
 use crate::robot::JointKind;
 use crate::robot::names::quote;
+use crate::robot::{degrees_suspected, millimetres_suspected};
 
 /// From this size on a limit is taken as "unlimited": real files write 1e16 or 1e308.
 const UNLIMITED: f64 = 1e12;
@@ -37,7 +38,8 @@ pub(super) fn read(reader: &mut Reader<'_, '_, '_, '_>) {
         let cause = "its `deceleration` limit is not checked: `acceleration` counts in both directions";
         reader.note(element::offset(node), cause);
     }
-    let (lower, upper) = if is_bounded { bounds(reader, node) } else { (f64::NEG_INFINITY, f64::INFINITY) };
+    let (lower, upper) = if is_bounded { bounds(reader, node) } else { unbounded(reader, node) };
+    question_units(reader, node, [lower, upper]);
     warn_of_missing(reader, node, is_bounded);
     for (name, value) in [("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk)] {
         if value == 0.0 {
@@ -85,6 +87,48 @@ fn bounds(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>) -> (f64, f64)
         reader.warn(place, &format!("its lower and upper limits are both {lower}: the joint can not move"));
     }
     (lower, upper)
+}
+
+/// A continuous joint turns on and on, whatever its limits say.
+fn unbounded(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>) -> (f64, f64) {
+    let given = ["lower", "upper"].into_iter().filter_map(|name| element::attribute(node, name));
+    let given: Vec<String> = given.map(|limit| format!("{}=\"{}\"", limit.name(), limit.value())).collect();
+    if !given.is_empty() {
+        let given = given.join(" ");
+        let cause = format!(
+            "it is continuous: its limits {} are not applied; make it revolute if they are meant",
+            quote(&given)
+        );
+        reader.note(element::offset(node), &cause);
+    }
+    (f64::NEG_INFINITY, f64::INFINITY)
+}
+
+/// Says what a `<safety_controller>` asks for: nothing of it is applied.
+pub(super) fn note_soft_limits(reader: &mut Reader<'_, '_, '_, '_>) {
+    let Some(node) = element::children_named(reader.node, "safety_controller").next() else { return };
+    let end = |name| element::attribute(node, name).map_or("-", |limit| limit.value());
+    let (lower, upper) = (end("soft_lower_limit"), end("soft_upper_limit"));
+    if (lower, upper) != ("-", "-") {
+        let cause = format!(
+            "the soft limits {} to {} of its `<safety_controller>` are not applied: those of `<limit>` count",
+            quote(lower),
+            quote(upper)
+        );
+        reader.note(element::offset(node), &cause);
+    }
+}
+
+/// Questions position limits that are likely to be in another unit.
+fn question_units(reader: &mut Reader<'_, '_, '_, '_>, node: Node<'_, '_>, ends: [f64; 2]) {
+    let doubt = if reader.joint.kind.is_some_and(JointKind::is_rotation) {
+        degrees_suspected(&ends)
+    } else {
+        millimetres_suspected(&ends)
+    };
+    if let Some(doubt) = doubt {
+        reader.warn(element::offset(node), &format!("a position limit of {doubt}"));
+    }
 }
 
 /// Says how absent limits are understood; of a joint that is defective anyway nobody needs to know.

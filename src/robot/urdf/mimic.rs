@@ -47,7 +47,11 @@ fn target(
         }
         Some(target) => Some(target),
         None => {
-            let suggestion = report.suggestion(&name, joints.iter().map(|joint| joint.name.as_str()));
+            let mut suggestion = report.suggestion(&name, joints.iter().map(|joint| joint.name.as_str()));
+            if suggestion.is_empty() {
+                let known: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+                suggestion = format!("; the joints are {}", short_list(&known, "and"));
+            }
             let reason = format!("it mimics joint {}, which is not defined{suggestion}", quote(&name));
             joints[index].fail(place, reason, report);
             None

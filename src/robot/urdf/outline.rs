@@ -18,6 +18,12 @@ const MAX_ATTRIBUTES_OF_ONE: usize = 256;
 /// Most namespace declarations in a file (the parser copies them down the tree).
 const MAX_NAMESPACES: usize = 1_000;
 
+/// The elements of a joint that kinematics reads.
+const JOINT_PARTS: [&str; 6] = ["origin", "parent", "child", "axis", "limit", "mimic"];
+/// What xacro never leaves in a robot that it expanded.
+const UNEXPANDED: [&str; 5] =
+    ["xacro:include", "xacro:macro", "xacro:if", "xacro:unless", "xacro:insert_block"];
+
 /// A start tag: where it stands and its name.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tag<'a> {
@@ -50,8 +56,10 @@ pub(super) struct Outline<'a> {
     /// Tags still open at the end.
     pub(super) open: Vec<Tag<'a>>,
     pub(super) stop: Option<Stop<'a>>,
-    /// Where `${`, `$(arg ` or a `xacro:` element first stands outside comments.
+    /// Where `${`, `$(arg ` or a `xacro:` element first stands in a part that kinematics reads.
     pub(super) xacro: Option<usize>,
+    /// Where such things stand in parts that kinematics does not read.
+    pub(super) leftovers: Vec<usize>,
     /// Bodies of comments that hold `--`, which XML forbids and URDF files have.
     pub(super) dashed_comments: Vec<Range<usize>>,
     prefixes: Vec<(usize, &'a str)>,
@@ -86,15 +94,37 @@ impl<'a> Outline<'a> {
         {
             return Err(Stop::AfterRoot(offset + found));
         }
-        self.look_for_xacro(characters, offset);
+        // No part of URDF is written as characters.
+        self.look_for_xacro(characters, offset, None);
         Ok(())
     }
 
-    fn look_for_xacro(&mut self, characters: &str, offset: usize) {
-        if self.xacro.is_none()
-            && let Some(found) = ["${", "$(arg "].iter().filter_map(|mark| characters.find(mark)).min()
-        {
-            self.xacro = Some(offset + found);
+    /// Looks for xacro in characters, or in an attribute of an element of that name.
+    fn look_for_xacro(&mut self, characters: &str, offset: usize, element: Option<&str>) {
+        if let Some(found) = ["${", "$(arg "].iter().filter_map(|mark| characters.find(mark)).min() {
+            let is_read = element.is_some_and(|name| self.is_read(name));
+            self.note_xacro(offset + found, is_read);
+        }
+    }
+
+    fn note_xacro(&mut self, offset: usize, is_read: bool) {
+        if is_read {
+            self.xacro.get_or_insert(offset);
+        } else {
+            self.leftovers.push(offset);
+        }
+    }
+
+    /// Whether kinematics reads the attributes of an element of that name that stands in those which are open, or would
+    /// read what xacro makes of it: a `xacro:` element in a joint may stand for its origin; includes, macros and conditions
+    /// in a robot say that nothing of it was expanded.
+    fn is_read(&self, name: &str) -> bool {
+        let path: Vec<&str> = self.open.iter().skip(1).map(|tag| tag.name).chain([name]).collect();
+        match path[..] {
+            _ if self.open.is_empty() => true,
+            [] | ["link" | "joint"] => true,
+            ["joint", part] => JOINT_PARTS.contains(&part) || part.starts_with("xacro:"),
+            [first, ..] => UNEXPANDED.contains(&first),
         }
     }
 
@@ -143,12 +173,12 @@ impl<'a> Outline<'a> {
         let name = text[start + 1..].split(|c: char| c.is_ascii_whitespace() || c == '/' || c == '>').next();
         let tag = Tag { offset: start, name: name.unwrap_or_default() };
         if tag.name.starts_with("xacro:") {
-            self.xacro.get_or_insert(start);
+            self.note_xacro(start, self.is_read(tag.name));
         }
         self.prefix_of(tag.name, start + 1);
         self.elements += 1;
         within(self.elements, MAX_ELEMENTS, "elements", start)?;
-        let end = self.attributes_of(text, start, start + 1 + tag.name.len())?;
+        let end = self.attributes_of(text, tag)?;
         if !text[..end].ends_with("/>") {
             if self.open.len() == MAX_DEPTH {
                 return Err(Stop::TooDeep(tag));
@@ -161,7 +191,8 @@ impl<'a> Outline<'a> {
     }
 
     /// Walks from quote to quote and returns where the tag ends.
-    fn attributes_of(&mut self, text: &'a str, start: usize, from: usize) -> Result<usize, Stop<'a>> {
+    fn attributes_of(&mut self, text: &'a str, tag: Tag<'a>) -> Result<usize, Stop<'a>> {
+        let (start, from) = (tag.offset, tag.offset + 1 + tag.name.len());
         let torn = Stop::Torn { offset: start, inside: "a tag" };
         let mut at = from;
         for count in 1.. {
@@ -175,7 +206,7 @@ impl<'a> Outline<'a> {
             let quote = char::from(text.as_bytes()[found]);
             let value = found + 1;
             let close = value + text[value..].find(quote).ok_or(torn)?;
-            self.look_for_xacro(&text[value..close], value);
+            self.look_for_xacro(&text[value..close], value, Some(tag.name));
             self.attribute_name(text, at..found, start)?;
             at = close + 1;
         }

@@ -99,6 +99,10 @@ pub(crate) struct RobotFile {
     #[arg(long, value_name = "FILE")]
     pub(crate) calibration: Option<PathBuf>,
 
+    /// A YAML file of joint limits that go over the robot's own (joint_limits, as in MoveIt's joint_limits.yaml)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) limits: Option<PathBuf>,
+
     /// Hold a joint still, at a position in rad or m, or a floating, planar or spherical one at "x y z roll pitch yaw" or
     /// 0. May be given again
     #[arg(long, value_name = "JOINT=VALUE")]

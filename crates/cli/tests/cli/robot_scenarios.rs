@@ -116,3 +116,33 @@ fn a_free_joint_on_the_path_is_named_with_its_remedy() {
     desk.run(&["plan", "s.toml", "--set", "arm.left.lock={ j4 = 0 }", "--set", "arm.left.q0=[0.3, 0.5]"])
         .expect(0);
 }
+
+#[test]
+fn a_file_of_limits_goes_over_the_robots_own() {
+    let desk = desk();
+    let limits = |rest: &str| {
+        format!("joint_limits:\n  j1:\n    has_acceleration_limits: true\n    max_acceleration: 0.01\n{rest}")
+    };
+    let scenario = SCENARIO.replace("calibration = ", "limits = \"robots/limits.yaml\"\ncalibration = ");
+    std::fs::write(desk.path("limited.toml"), scenario).unwrap();
+    std::fs::write(desk.path("robots/limits.yaml"), limits("default_velocity_scaling_factor: 0.1\n"))
+        .unwrap();
+    let said = desk.run(&["plan", "limited.toml", "--out", "limited", "--json"]).expect(1);
+    assert!(said.out.contains("\"kind\": \"acceleration\""), "{}", said.out);
+    assert!(
+        said.out.contains("limits.yaml:5:34: note: `default_velocity_scaling_factor` is not applied"),
+        "{}",
+        said.out
+    );
+    // What is written down finds the file again.
+    desk.run(&["plan", "limited/scenario.toml"]).expect(1);
+    let shown = desk.run(&["robot", "show", "robots/arm.toml", "--limits", "robots/limits.yaml"]).expect(0);
+    assert!(shown.out.contains("acceleration") && shown.out.contains("0.01"), "{}", shown.out);
+    std::fs::write(desk.path("robots/limits.yaml"), limits("  elbow: {}\n")).unwrap();
+    let refused = desk.run(&["plan", "limited.toml"]).expect(3);
+    assert!(
+        refused.err.contains("arm.left.limits") && refused.err.contains("no joint `elbow`"),
+        "{}",
+        refused.err
+    );
+}

@@ -298,7 +298,7 @@ fn objection((spec, arm): (&ArmSpec, &Arm), (other_spec, other): (&ArmSpec, &Arm
     } else if spec.base == other_spec.base {
         (
             "robot",
-            "give them the same `calibration`, `lock` and `assume_unlimited` to share the joint, or different mounts if \
+            "give them the same `calibration`, `limits`, `lock` and `assume_unlimited` to share the joint, or different mounts if \
                    there are two such robots",
         )
     } else {
@@ -366,7 +366,8 @@ impl ArmSpec {
     /// Whether two arms are parts of one machine: of the same robot, with their bases at the same place.
     pub(super) fn is_same_machine(&self, other: &Self) -> bool {
         (&self.robot, &self.base, &self.mount) == (&other.robot, &other.base, &other.mount)
-            && (&self.calibration, &self.lock) == (&other.calibration, &other.lock)
+            && (&self.calibration, &self.limits, &self.lock)
+                == (&other.calibration, &other.limits, &other.lock)
             && self.assume_unlimited == other.assume_unlimited
     }
 }

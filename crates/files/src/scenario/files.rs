@@ -64,6 +64,10 @@ impl Scenario {
                 let path = find(named, folder).ok_or_else(|| missing(named, folder))?;
                 arm.calibration = Some(reference(&path, into)?);
             }
+            if let Some(named) = &arm.limits {
+                let path = find(named, folder).ok_or_else(|| missing(named, folder))?;
+                arm.limits = Some(reference(&path, into)?);
+            }
         }
         let mut rows: Vec<PathBuf> = Vec::new();
         let (texts, files): (Vec<&String>, Vec<&String>) =

@@ -47,7 +47,7 @@ pub use lock_position::LockPosition;
 pub use model::{ArmSpec, Mount, Scenario};
 pub use noise_spec::NoiseSpec;
 pub use path_spec::{PathSpec, TurnSpec};
-pub use robot_edits::{calibrated, tool_name};
+pub use robot_edits::{calibrated, limited, tool_name};
 pub use robots::RobotSource;
 pub use start_pose::{OnPath, StartPose, TipPose};
 pub use study_spec::{MeasureKind, Precision, ProblemSpec, StudySpec};

@@ -97,6 +97,10 @@ pub struct ArmSpec {
     /// `reversed`), relative to the scenario's own file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<String>,
+    /// A file of joint limits that go over the robot's own (`joint_limits` as in MoveIt's joint_limits.yaml), relative to the
+    /// scenario's own file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<String>,
     /// Joints of the robot that are held still, by name; on the arm's path they count as fixed.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub lock: BTreeMap<String, LockPosition>,

@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
+use super::build::read_robot;
 use super::document::read_text;
 use super::error::{ErrorKind, Place, ScenarioError};
 use super::files;
 use super::key_path::KeyPath;
-use super::model::ArmSpec;
+use super::model::{ArmSpec, Scenario};
+use crate::trajectory::LimitsFile;
 use kinstep::kind::Real;
-use kinstep::robot::{Calibration, CalibrationError, Robot};
+use kinstep::robot::{Calibration, CalibrationError, Diagnostic, Robot, Severity};
 
 /// Returns the robot with the corrections that a calibration file lists.
 ///
@@ -23,12 +25,32 @@ pub fn calibrated(robot: &Robot, file: &Path) -> Result<Robot, ScenarioError> {
         .map_err(|e| refusal(&e, file, &text))
 }
 
+/// Returns the robot with the limits of a file over its own, and what has to be said of that, by place in the file.
+///
+/// # Errors
+/// [`ScenarioError`] of kind [`ErrorKind::File`] where the file can not be read, of kind [`ErrorKind::Robot`], with the place
+/// in the file, where it holds no limits or does not fit the robot.
+pub fn limited(robot: &Robot, file: &Path) -> Result<(Robot, Vec<Diagnostic>), ScenarioError> {
+    let text = read_text(file)?;
+    LimitsFile::from_yaml(&text).and_then(|limits| limits.over(robot)).map_err(|found| {
+        let first = first_error(&found);
+        let more = found.iter().filter(|found| found.severity == Severity::Error).count().saturating_sub(1);
+        let more = if more > 0 { format!(" (and {more} more)") } else { String::new() };
+        let (line, column, message) =
+            first.map_or((1, 1, ""), |first| (first.line, first.column, &first.message));
+        let place = Place::of_line(Some(file.display().to_string()), &text, line, column);
+        ScenarioError::new(ErrorKind::Robot, format!("{message}{more}")).or_placed(Some(place))
+    })
+}
+
+fn first_error(found: &[Diagnostic]) -> Option<&Diagnostic> {
+    found.iter().find(|found| found.severity == Severity::Error)
+}
+
 fn refusal(error: &CalibrationError, file: &Path, text: &str) -> ScenarioError {
     let name = file.display().to_string();
     let first = match error {
-        CalibrationError::Text(found) => {
-            found.iter().find(|found| found.severity == kinstep::robot::Severity::Error)
-        }
+        CalibrationError::Text(found) => first_error(found),
         _ => None,
     };
     let (message, line, column) = if let Some(first) = first {
@@ -53,6 +75,20 @@ pub fn tool_name(robot: &Robot, tip: &str) -> String {
     name
 }
 
+/// Changes a robot by the file that a key names.
+fn by_file(
+    at: &KeyPath,
+    reference: &str,
+    folder: Option<&Path>,
+    edit: impl FnOnce(&Path) -> Result<Robot, ScenarioError>,
+) -> Result<Robot, ScenarioError> {
+    let file = files::find(reference, folder).ok_or_else(|| files::missing(reference, folder));
+    file.and_then(|file| edit(&file)).map_err(|e| {
+        let path = Some(at.clone()).filter(|_| e.place.is_none());
+        ScenarioError { message: format!("{at}: {}", e.message), path, ..e }
+    })
+}
+
 impl ArmSpec {
     /// Returns the arm's robot, calibrated and with its locked joints held.
     pub(super) fn changed(
@@ -63,13 +99,11 @@ impl ArmSpec {
     ) -> Result<Robot, ScenarioError> {
         let mut robot = robot;
         if let Some(reference) = &self.calibration {
-            let at = at.key("calibration");
-            let file = files::find(reference, folder).ok_or_else(|| files::missing(reference, folder));
-            let done = file.and_then(|file| calibrated(&robot, &file));
-            robot = done.map_err(|e| {
-                let path = Some(at.clone()).filter(|_| e.place.is_none());
-                ScenarioError { message: format!("{at}: {}", e.message), path, ..e }
-            })?;
+            robot = by_file(&at.key("calibration"), reference, folder, |file| calibrated(&robot, file))?;
+        }
+        if let Some(reference) = &self.limits {
+            let edit = |file: &Path| limited(&robot, file).map(|(robot, _)| robot);
+            robot = by_file(&at.key("limits"), reference, folder, edit)?;
         }
         for (joint, held) in &self.lock {
             let numbers: Vec<f64> = held.numbers().iter().map(Real::value).collect();
@@ -90,4 +124,45 @@ impl ArmSpec {
         let refuse = |e| ScenarioError::at(ErrorKind::Robot, &at.key("tool"), e);
         Ok((tooled.map_err(refuse)?, name))
     }
+}
+
+impl Scenario {
+    /// Returns what has to be said of the robots of the arms as their files give them, file by file: `FILE:line:column: ...`.
+    /// Nothing of a file that can not be read: that is refused elsewhere.
+    pub fn robot_findings(&self, folder: Option<&Path>) -> Vec<String> {
+        let mut said = Vec::new();
+        for arm in &self.arm {
+            let Ok((source, robot)) = read_robot(&KeyPath::dotted("arm").key(&arm.name), arm, folder) else {
+                continue;
+            };
+            let found = robot.diagnostics().iter().map(|found| format!("{}:{found}", source.label()));
+            said.extend(found);
+        }
+        each_once(said)
+    }
+
+    /// Returns what has to be said of the arms' files of limits: limits that are wider than the robots' own, and what the files
+    /// hold and is not applied.
+    pub fn limit_findings(&self, folder: Option<&Path>) -> Vec<String> {
+        let mut said = Vec::new();
+        for arm in &self.arm {
+            let read = read_robot(&KeyPath::dotted("arm").key(&arm.name), arm, folder).ok();
+            let file = arm.limits.as_deref().and_then(|reference| files::find(reference, folder));
+            let Some(((_, robot), file)) = read.zip(file) else { continue };
+            let notes = limited(&robot, &file).map(|(_, notes)| notes).unwrap_or_default();
+            said.extend(notes.iter().map(|note| format!("{}:{note}", file.display())));
+        }
+        each_once(said)
+    }
+}
+
+/// Arms of one robot have the same to say.
+fn each_once(said: Vec<String>) -> Vec<String> {
+    let mut once: Vec<String> = Vec::new();
+    for sentence in said {
+        if !once.contains(&sentence) {
+            once.push(sentence);
+        }
+    }
+    once
 }

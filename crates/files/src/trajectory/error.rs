@@ -26,7 +26,7 @@ pub struct TextPlace {
 
 impl TextPlace {
     /// Returns the place of a byte of `text`.
-    fn of_byte(text: &str, byte: usize) -> Self {
+    pub(super) fn of_byte(text: &str, byte: usize) -> Self {
         let byte = text.floor_char_boundary(byte);
         let start = text[..byte].rfind('\n').map_or(0, |at| at + 1);
         let line = text[..start].matches('\n').count() + 1;

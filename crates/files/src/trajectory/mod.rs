@@ -18,6 +18,7 @@ mod format;
 mod formats;
 mod group;
 mod inspect;
+mod limits_file;
 mod mcap;
 mod mcap_records;
 mod npy;
@@ -48,6 +49,7 @@ pub use formats::{Export, ExportFile};
 pub use inspect::{
     Course, Crossing, Disagreement, Interpolation, JointFigures, Jump, Met, Rest, Straying, TimeFigures,
 };
+pub use limits_file::LimitsFile;
 pub use npz::Npz;
 pub use read::{Source, TrajectoryReader};
 pub use ros2_yaml::{MoveItYaml, Ros2Yaml};

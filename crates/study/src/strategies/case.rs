@@ -180,6 +180,7 @@ impl OrderCase {
             mount: scenario::Mount::default(),
             tool: scenario::Mount::default(),
             calibration: None,
+            limits: None,
             lock: BTreeMap::new(),
             independent: false,
             assume_unlimited: false,
