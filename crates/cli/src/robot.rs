@@ -1,5 +1,7 @@
 //! `kinstep robot`: what a URDF says, what is wrong with it, and the kinematics of its chains.
 
+use std::path::Path;
+
 use std::fmt::Write;
 
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector6};
@@ -67,6 +69,16 @@ pub(super) fn read(file: &RobotFile, output: &Output) -> Result<Robot, Failure> 
     edited(robot, file, output)
 }
 
+/// Returns the robot with the limits of a file over its own, and says what has to be said of them.
+pub(super) fn limited_by(robot: &Robot, file: &Path, output: &Output) -> Result<Robot, Failure> {
+    let (robot, notes) = limited(robot, file)?;
+    let label = file.display().to_string();
+    for note in notes {
+        output.aside(&printable(&format!("{label}:{note}")));
+    }
+    Ok(robot)
+}
+
 /// Returns the robot with the calibration, the limits and the locks that were asked for.
 fn edited(robot: Robot, file: &RobotFile, output: &Output) -> Result<Robot, Failure> {
     let mut robot = robot;
@@ -74,12 +86,7 @@ fn edited(robot: Robot, file: &RobotFile, output: &Output) -> Result<Robot, Fail
         robot = calibrated(&robot, calibration)?;
     }
     if let Some(limits) = &file.limits {
-        let (changed, notes) = limited(&robot, limits)?;
-        robot = changed;
-        let label = limits.display().to_string();
-        for note in notes {
-            output.aside(&printable(&format!("{label}:{note}")));
-        }
+        robot = limited_by(&robot, limits, output)?;
     }
     for lock in &file.lock {
         let (joint, values) = lock.split_once('=').ok_or_else(|| {

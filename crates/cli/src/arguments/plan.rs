@@ -182,6 +182,10 @@ pub(crate) struct CheckArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,
 
+    /// A YAML file of joint limits that go over those of --robot (joint_limits, as in MoveIt's joint_limits.yaml)
+    #[arg(long, value_name = "FILE", requires = "robot")]
+    pub(crate) limits: Option<PathBuf>,
+
     /// How a controller moves between samples; unless given what they declare decides: quintic with velocities and
     /// accelerations, cubic with velocities, linear else
     #[arg(long, value_name = "linear|cubic|quintic", value_parser = interpolation)]

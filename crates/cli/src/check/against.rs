@@ -5,6 +5,8 @@ use std::path::Path;
 use super::super::arguments::CheckArguments;
 use super::super::export;
 use super::super::failure::Failure;
+use super::super::output::Output;
+use super::super::robot::limited_by;
 use super::super::share_out::{Shares, Taker, share_out};
 use super::sentences;
 use super::verdict::{ArmChecked, Checked, Clock, PathChecked};
@@ -68,6 +70,15 @@ impl Asked {
     }
 }
 
+/// The robot that is named, with the limits of the file that is named over its own.
+fn robot_of_file(name: &str, arguments: &CheckArguments, output: &Output) -> Result<Robot, Failure> {
+    let robot = export::robot(name)?;
+    match &arguments.limits {
+        Some(file) => limited_by(&robot, file, output),
+        None => Ok(robot),
+    }
+}
+
 /// The robot that an arm is part of.
 fn robot_of<'s>(stage: &'s Stage, arm: &str) -> Option<&'s Robot> {
     Some(&stage.machines[stage.arm(arm)?.machine].robot)
@@ -84,7 +95,7 @@ fn followers(arm: &Arm, robot: &Robot) -> Vec<String> {
 }
 
 impl Against {
-    pub(super) fn of(arguments: &CheckArguments) -> Result<Self, Failure> {
+    pub(super) fn of(arguments: &CheckArguments, output: &Output) -> Result<Self, Failure> {
         let (mut trajectory, _) = export::load(&arguments.trajectory, &arguments.robot)?;
         let own = arguments.trajectory.join("scenario.toml");
         let folder = arguments.trajectory.is_dir().then_some(own.as_path());
@@ -92,7 +103,9 @@ impl Against {
         let Asked { takers, stage, duration, tasks } =
             scenario.map_or_else(|| Ok(Asked::nothing()), Asked::of)?;
         let robot = arguments.robot.robot.as_deref();
-        let robot = robot.map(|name| Ok::<_, Failure>((name, export::robot(name)?))).transpose()?;
+        let robot = robot
+            .map(|name| Ok::<_, Failure>((name, robot_of_file(name, arguments, output)?)))
+            .transpose()?;
         let Shares { moved, absent } = share_out(&trajectory.arms, takers, robot.is_some())?;
         let (mut arms, mut all) = (Vec::new(), Vec::new());
         for (arm, path) in moved {

@@ -14,7 +14,7 @@ pub(super) fn run(arguments: &CheckArguments, output: &mut Output) -> Result<Exi
         let got = arguments.max_error;
         return Err(Failure::usage(format!("--max-error: expected a length above 0, got {got}")));
     }
-    let checked = Against::of(arguments)?.checked(arguments.max_error);
+    let checked = Against::of(arguments, output)?.checked(arguments.max_error);
     output.show(&checked)?;
     Ok(if checked.ok { Exit::Done } else { Exit::CheckFailed })
 }

@@ -114,3 +114,20 @@ fn a_path_is_asked_for_from_its_beginning_to_its_end() {
     let standing = asked("standing.csv", part(0, 5)).expect(1).out;
     assert!(standing.contains("is missing"), "{standing}");
 }
+
+#[test]
+fn a_file_of_limits_adds_what_a_robot_lacks() {
+    let desk = desk();
+    std::fs::write(
+        desk.path("joint_limits.yaml"),
+        "joint_limits:\n  shoulder_pan_joint:\n    has_velocity_limits: false\n    has_acceleration_limits: true\n    max_acceleration: 14.0\n",
+    )
+    .unwrap();
+    let check = ["check", "cubic_peak.yaml", "--robot", "ur5e", "--limits", "joint_limits.yaml"];
+    let text = desk.run(&check).expect(1).out;
+    // 6 q / T^2 at both ends of a cubic from rest to rest.
+    assert!(text.contains("acceleration 15 crosses its limit 14, first at t = 0 s"), "{text}");
+    let unknown = std::fs::read_to_string(desk.path("joint_limits.yaml")).unwrap().replace("pan", "span");
+    std::fs::write(desk.path("joint_limits.yaml"), unknown).unwrap();
+    assert!(desk.run(&check).expect(3).err.contains("shoulder_pan_joint"));
+}
