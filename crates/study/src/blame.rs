@@ -1,8 +1,9 @@
 //! What is the problem's fault and not the row's.
 
 use super::convergence::{Convergence, Mark, Undecidable, Verdict};
+use super::ladder::Ladder;
 use super::order::{Judged, OrderReport, OrderStudy};
-use super::reference::{Reference, growth};
+use super::reference::{Reference, growth, rough_between};
 use super::stability::Spectra;
 use kinstep::formula::Formula;
 use kinstep::integrate::Equations;
@@ -15,6 +16,8 @@ const NOT_FOLLOWED: f64 = 1e-6;
 const LOST: f64 = 1e-2;
 /// Growth of small changes from which on a problem is called sensitive.
 const SENSITIVE: f64 = 1e3;
+/// The tolerance of the run that looks for where a right-hand side is not smooth.
+const TOLERANCE: f64 = 1e-24;
 /// States of the solution at which the Jacobian matrix is looked at.
 const STATES: usize = 33;
 
@@ -49,22 +52,19 @@ impl OrderStudy {
         {
             unless_confirmed(report, |part| lost(part).then_some(Undecidable::Sensitive { growth }));
         }
-        let Some(rough) = Roughness::of(equations, reference) else { return };
-        let before =
-            report.of_solution().filter(|part| matches!(part.verdict, Verdict::Undecidable(_))).count();
+        let is_blamed = |part: &Convergence| !part.verdict.is_confirmed() && part.finest_slope().is_some();
+        if !report.of_solution().any(|part| is_blamed(part)) {
+            return;
+        }
+        let Some(rough) = Roughness::of(equations, reference, self.ladder()) else { return };
         unless_confirmed(report, |part| {
-            let finest = part
-                .finest_slope()
-                .filter(|_| !matches!(part.verdict, Verdict::Undecidable(why) if !is_open(why)))?;
+            let is_known = matches!(part.verdict, Verdict::Undecidable(why) if !is_open(why));
+            let finest = part.finest_slope().filter(|_| !is_known)?;
             Some(Undecidable::NotSmooth { at: rough.at, finest })
         });
-        let after =
-            report.of_solution().filter(|part| matches!(part.verdict, Verdict::Undecidable(_))).count();
-        if after > before
-            || report
-                .of_solution()
-                .any(|part| matches!(part.verdict, Verdict::Undecidable(Undecidable::NotSmooth { .. })))
-        {
+        let is_rough =
+            |part: &Convergence| matches!(part.verdict, Verdict::Undecidable(Undecidable::NotSmooth { .. }));
+        if report.of_solution().any(|part| is_rough(part)) {
             report.notes.push(rough.sentence);
         }
     }
@@ -113,6 +113,8 @@ fn unless_confirmed(report: &mut OrderReport, why: impl Fn(&Convergence) -> Opti
     for part in report.of_solution().filter(|part| !part.verdict.is_confirmed()) {
         if let Some(why) = why(part) {
             part.verdict = Verdict::Undecidable(why);
+            // A power law through what the problem spoils says nothing.
+            part.fit = None;
         }
     }
 }
@@ -124,16 +126,17 @@ struct Roughness {
 }
 
 impl Roughness {
-    fn of(equations: &Equations, reference: &Reference) -> Option<Self> {
+    fn of(equations: &Equations, reference: &Reference, ladder: &Ladder) -> Option<Self> {
         if let Some((text, between, count)) = first_switch(equations, reference) {
             let often = if count == 1 { "once".to_owned() } else { format!("{count} times") };
             let sentence = format!(
                 "`{text}` switches {often} on the way, first between t = {:.6} s and {:.6} s: derivatives of the right-hand side jump there",
                 between.0, between.1
             );
-            return Some(Self { at: between.1, sentence });
+            let within = reference.rough.filter(|at| (between.0..=between.1).contains(at));
+            return Some(Self { at: within.unwrap_or(between.1), sentence });
         }
-        let at = reference.rough?;
+        let at = reference.rough.or_else(|| rough_between(equations, ladder, TOLERANCE))?;
         let sentence = format!(
             "near t = {at:.6} s the reference needed steps a millionth of the finest gap: the right-hand side, or a derivative of it, jumps or is infinite there"
         );

@@ -429,7 +429,7 @@ fn joint_error(plan: &Plan, reference: &Plan) -> f64 {
 /// Rough errors can be signal too, of parasitic roots for instance. That falls from rung to rung, which round-off does not.
 fn floor(errors: &[Errors], resolution: f64) -> f64 {
     let run: Vec<&Errors> = errors.iter().filter(|errors| errors.transient.is_finite()).collect();
-    let least = run.iter().map(|errors| errors.scale).fold(1.0, f64::max) * 2.0 * resolution;
+    let least = run.iter().map(|errors| errors.scale).fold(0.0, f64::max) * 2.0 * resolution;
     let last = &run[run.len().saturating_sub(3)..];
     let falls = last.windows(2).all(|pair| pair[1].jitter < STILL_FALLING * pair[0].jitter);
     match last.last() {

@@ -257,6 +257,23 @@ fn magnitude(equations: &Equations, ladder: &Ladder) -> Result<f64, String> {
     Ok(integrator.scale)
 }
 
+/// Where the right-hand side is first seen not to be smooth by a run whose steps end at other times than those of the runs: what
+/// happens at their samples can not be seen from there.
+pub(super) fn rough_between(equations: &Equations, ladder: &Ladder, tolerance: f64) -> Option<f64> {
+    // The golden ratio: no fraction of a gap is further from simple ones.
+    const SHIFT: f64 = 0.618_033_988_749_894_8;
+    let mut integrator = Extrapolation::new(equations, tolerance, magnitude(equations, ladder).ok()?);
+    integrator.finest = ladder.sigmas().last().copied()?;
+    let gap = DoubleDouble::from(ladder.sigmas().first().copied()? * SHIFT);
+    let end = DoubleDouble::from(ladder.duration());
+    for t in coarsest(ladder).map(|t| t + gap).filter(|t| *t < end) {
+        if integrator.rough.is_some() || integrator.go_to(t).is_err() {
+            break;
+        }
+    }
+    integrator.rough
+}
+
 /// How many times a small change of the start grows on the way, at most: of two solutions side by side, the second is brought back to
 /// the first whenever they have drifted apart (G. Benettin, L. Galgani and J. M. Strelcyn, Phys. Rev. A 14, 1976). Nothing where the
 /// solution can not be followed.
