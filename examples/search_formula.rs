@@ -17,7 +17,7 @@ impl Observer for Teller {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let fast = Options { starts: 16, front: true, ..Options::new(Family::LookAhead, 5, 3, Objective::Decay) };
     let outcome = search(&fast, &Teller)?;
-    println!("in real numbers {:.4}; as fractions:\n", outcome.bound);
+    println!("the best row that was decided exactly has {:.6}; with small denominators:\n", outcome.bound);
     for found in &outcome.rows {
         println!("{}", found.checked.to_toml());
     }

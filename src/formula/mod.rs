@@ -16,6 +16,7 @@ mod error;
 mod feedback_range;
 #[expect(clippy::module_inception, reason = "the file is named after the one type it holds")]
 mod formula;
+mod hint;
 mod limits;
 mod noise;
 mod order;
@@ -39,6 +40,7 @@ pub use derivative_rule::DerivativeRule;
 pub use error::{Contradiction, Defect, DefectKind, NotRunnable, Place, TableError, UnknownFormula};
 pub use feedback_range::FeedbackRange;
 pub use formula::Formula;
+pub use hint::{Hint, Slip};
 pub use limits::MAX_STEPS;
 pub use noise::NoiseGain;
 pub use order::order_defect;

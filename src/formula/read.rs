@@ -6,7 +6,7 @@ use num_traits::ToPrimitive;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::math::{Rational, parse_rational};
+use crate::math::{Rational, parse_rational, rational_from_f64};
 
 use super::error::{Defect, DefectKind, Place, TableError, nearest};
 use super::row::{Coefficients, Declared, Places, Row};
@@ -274,6 +274,8 @@ impl Reader<'_> {
             DeValue::Float(float) => {
                 let text = crate::math::shortened(float.as_str());
                 match parse_rational(&float.as_str().replace('_', "")) {
+                    // Halves and their like are the same in binary: nothing was rounded.
+                    Ok(exact) if is_exact(float.as_str(), &exact) => Ok(exact),
                     Ok(_) => {
                         self.report(value.span().start, DefectKind::BareFloat { key, text });
                         return None;
@@ -368,4 +370,10 @@ fn coefficient_place(table: &DeTable<'_>, kind: &DefectKind, start: usize) -> us
         _ => "difference",
     };
     table.get(key).or_else(|| table.get("alpha")).map_or(start, |value| value.span().start)
+}
+
+/// Whether a double holds a decimal without rounding it.
+fn is_exact(text: &str, exact: &Rational) -> bool {
+    let double = text.replace('_', "").parse::<f64>().ok().and_then(rational_from_f64);
+    double.as_ref() == Some(exact)
 }

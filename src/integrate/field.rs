@@ -1,5 +1,5 @@
 use super::affine::{Affine, Solved};
-use super::scalar::Scalar;
+use crate::math::Scalar;
 
 /// What the second part `g` of a right-hand side means to a starter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-use super::scalar::Scalar;
+use crate::math::Scalar;
 
 /// Whether a stepper can go on; where it can not, the last good state is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -169,7 +169,7 @@ mod tests {
         assert_eq!(problem(Form::Number, f64::NAN).1, "NaN is not a finite number");
         assert_eq!(
             problem(Form::Number, "tau").1,
-            "\"tau\", column 1: 'tau' is not known; the only name is pi"
+            "\"tau\", column 1: 'tau' is not known; known are pi and functions such as sin, atan2, sqrt, min"
         );
         assert_eq!(problem(Form::Pair, [1.0, 2.0, 3.0]), (None, "expected 2 numbers, got 3".to_owned()));
         assert_eq!(problem(Form::Vectors, vec![[1.0, 2.0]]), (None, "expected 3 numbers, got 2".to_owned()));

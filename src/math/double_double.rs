@@ -74,6 +74,11 @@ impl DoubleDouble {
         Self::sum_of_ordered(high, rest)
     }
 
+    /// The number times a power of two, exactly unless it leaves the range of doubles.
+    pub(super) fn scaled(self, power_of_two: f64) -> Self {
+        Self { high: self.high * power_of_two, low: self.low * power_of_two }
+    }
+
     /// a + b for |a| at least |b|.
     fn sum_of_ordered(a: f64, b: f64) -> Self {
         let high = a + b;

@@ -4,11 +4,13 @@ use num_traits::{One, Zero};
 
 use super::double_double::DoubleDouble;
 
-/// The natural logarithm of 2, to 32 digits.
-const LN_2: (f64, f64) = (std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17);
+/// The natural logarithm of 2 in three parts, so that a thousand of it can be taken off without loss.
+const LN_2: [f64; 3] = [std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17, 5.707_708_438_416_212e-34];
 /// A quarter of a turn in three parts, so that a few thousand turns can be taken off without loss.
 const QUARTER_TURN: [f64; 3] =
     [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-33];
+/// Numbers this near to one have their logarithm by series.
+const NEAR_ONE: f64 = 0.125;
 /// The exponential is squared this many times.
 const SQUARINGS: i32 = 9;
 
@@ -38,8 +40,8 @@ impl DoubleDouble {
             return number(high.exp());
         }
         // exp(x) = 2^k exp(r)^(2^9) with r below 1/1400.
-        let doublings = (high / LN_2.0).round();
-        let rest = self - number(doublings) * (number(LN_2.0) + number(LN_2.1));
+        let doublings = (high / LN_2[0]).round();
+        let rest = LN_2.iter().fold(self, |rest, &part| rest - number(doublings) * number(part));
         let small = rest * number((-f64::from(SQUARINGS)).exp2());
         let mut less_one = DoubleDouble::zero();
         for n in (1..=11).rev() {
@@ -54,6 +56,10 @@ impl DoubleDouble {
     /// Returns the natural logarithm; NaN for negative numbers.
     #[must_use]
     pub fn ln(self) -> Self {
+        let above = self - DoubleDouble::one();
+        if above.to_f64().abs() < NEAR_ONE {
+            return logarithm_near_one(above);
+        }
         let first = self.to_f64().ln();
         if !first.is_finite() {
             return number(first);
@@ -76,6 +82,18 @@ impl DoubleDouble {
             _ => (-cosine, sine),
         }
     }
+}
+
+/// ln(1 + x) = 2 artanh(x/(2 + x)) by its series: near one the step from a logarithm in doubles would lose digits.
+fn logarithm_near_one(x: DoubleDouble) -> DoubleDouble {
+    const TERMS: u32 = 14;
+    let ratio = x / (x + number(2.0));
+    let square = ratio * ratio;
+    let mut sum = DoubleDouble::zero();
+    for k in (0..TERMS).rev() {
+        sum = sum * square + DoubleDouble::one() / number(f64::from(2 * k + 1));
+    }
+    number(2.0) * ratio * sum
 }
 
 /// The series `x^first/first! - x^(first+2)/(first+2)! + ...` of sine (1) or cosine (0) below an eighth of a turn.

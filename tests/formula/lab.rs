@@ -5,7 +5,7 @@ use kinstep::formula::search::{
     Family, Figures, Found, Objective, Observer, Options, Outcome, SearchError, front, search,
 };
 use kinstep::formula::{FormulaTable, order_defect};
-use kinstep::math::Rational;
+use kinstep::math::{Rational, rational_from_f64};
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -216,5 +216,35 @@ fn a_search_that_is_interrupted_gives_what_it_has() {
     // Ended before it began, it has nothing to show, and says so or shows what the first starts were.
     if let Ok(outcome) = search(&options(Objective::Range), &Patience(AtomicUsize::new(0))) {
         assert!(!outcome.complete);
+    }
+}
+
+/// Suprema that are known: 16/21 for four steps of order three, 8/3 for three steps of order two.
+#[test]
+fn what_a_search_says_it_reached_is_never_above_the_supremum_and_a_larger_bound_finds_no_less() {
+    for (steps, order, supremum, has_it) in
+        [(4, 3, Rational::new(16.into(), 21.into()), 48), (3, 2, Rational::new(8.into(), 3.into()), 4)]
+    {
+        let mut least = 0.0;
+        for denominator in [has_it, 7 * has_it, 1000 * has_it] {
+            let options = Options {
+                denominator,
+                starts: 8,
+                ..Options::new(Family::LookAhead, steps, order, Objective::Range)
+            };
+            let outcome = search(&options, &()).expect("rows");
+            let exact =
+                outcome.rows[0].checked.analysis().feedback_range().and_then(|range| range.exact().cloned());
+            assert_eq!(exact.as_ref(), Some(&supremum), "{steps} steps, denominators up to {denominator}");
+            let bound = rational_from_f64(outcome.bound).expect("finite");
+            let hair = Rational::new(1.into(), 1_000_000_000_000_000_i64.into());
+            assert!(
+                bound <= &supremum + hair && outcome.bound >= outcome.rows[0].figures.h_max,
+                "{}",
+                outcome.bound
+            );
+            assert!(outcome.rows[0].figures.h_max >= least);
+            least = outcome.rows[0].figures.h_max;
+        }
     }
 }

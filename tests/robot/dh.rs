@@ -161,7 +161,7 @@ fn everything_that_is_wrong_with_a_table_is_said_with_its_place() {
             "2:1: error: a table of a robot has no key `colour`; it has `name`, `base`, `convention`, `joint`, `planar`, \
              `limits`, `velocity`, `acceleration` and `jerk`",
             "4:1: error: a row has no key `alhpa`; did you mean `alpha`?",
-            "5:5: error: `a`: \"pie\", column 1: 'pie' is not known; the only name is pi",
+            "5:5: error: `a`: \"pie\", column 1: 'pie' is not known; known are pi and functions such as sin, atan2, sqrt, min",
             "7:8: error: `ball` is no kind of joint; rows are `revolute`, `continuous`, `prismatic` or `fixed`",
             "9:10: error: joint `joint3`: its lower limit 2 is greater than its upper limit 1",
             "11:5: error: `d`: 1e7 is beyond any arm; lengths [m] and angles [rad] are at most 1e6 in size",

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use num_traits::ToPrimitive;
+use num_traits::{ToPrimitive, Zero};
 use serde::Serialize;
 
 use super::output::Show;
@@ -68,7 +68,14 @@ pub(super) struct Card {
     snippets: BTreeMap<&'static str, String>,
     #[serde(skip)]
     spelling: String,
+    #[serde(skip)]
+    has_root_at_one: bool,
 }
+
+/// The most rows that are offered in place of an inconsistent one.
+const MOST_HINTS: usize = 3;
+/// Moduli above this lie outside the unit circle: those of repeated roots on it are right to the last digits of a double.
+const OUTSIDE: f64 = 1.0 + 1e-9;
 
 /// The end of the feedback range: exact where it is a fraction, else by the polynomial that it is a root of.
 #[derive(Clone, Default, Serialize)]
@@ -161,7 +168,7 @@ impl HMax {
         let Self { exact, closed_form, polynomial, irreducible, value, unbounded, .. } = self;
         match (exact.as_deref(), value) {
             _ if *unbounded => "every h > 0".to_owned(),
-            (Some("0"), _) => "empty: no h gives a stable loop".to_owned(),
+            (Some("0"), _) => "empty: no small h > 0 gives a stable loop".to_owned(),
             (Some(exact), Some(value)) if exact.contains('/') => format!("0 < h < {exact} = {value:.6}"),
             (Some(exact), _) => format!("0 < h < {exact}"),
             (None, Some(value)) => {
@@ -170,7 +177,7 @@ impl HMax {
                 let minimal = if *irreducible == Some(true) { ", irreducible" } else { "" };
                 format!("0 < h < {closed}{value:.12}, a root of {polynomial}{minimal}")
             }
-            _ => "none".to_owned(),
+            _ => "none: the weights of the feedback cancel".to_owned(),
         }
     }
 
@@ -193,7 +200,8 @@ impl Card {
     pub(super) fn of_row(checked: &CheckedRow, finished: bool) -> Self {
         let problems = checked.contradictions().iter().map(ToString::to_string).collect();
         let toml = finished.then(|| checked.to_toml());
-        Self { toml, ..Self::new(checked.row(), checked.analysis(), problems) }
+        let remarks = checked.row().hints().iter().take(MOST_HINTS).map(ToString::to_string).collect();
+        Self { toml, remarks, ..Self::new(checked.row(), checked.analysis(), problems) }
     }
 
     pub(super) fn with_remark(mut self, remark: &str) -> Self {
@@ -227,6 +235,7 @@ impl Card {
             remarks: Vec::new(),
             toml: None,
             spelling: spelling(row),
+            has_root_at_one: analysis.order_defect(0).is_zero(),
         }
     }
 
@@ -236,14 +245,33 @@ impl Card {
         self
     }
 
+    /// What the exact verdict, and whether z = 1 is a root at all, say together.
     fn stability(&self) -> &'static str {
-        match self.facts.condition {
-            RootCondition::StrictlyStable => "zero-stable, with only z = 1 on the unit circle",
-            RootCondition::WeaklyStable => {
+        match (self.facts.condition, self.has_root_at_one) {
+            (RootCondition::StrictlyStable, true) => "zero-stable, with only z = 1 on the unit circle",
+            (RootCondition::StrictlyStable, false) => {
+                "all roots inside the unit circle; z = 1, a root of every consistent row, is none of them"
+            }
+            (RootCondition::WeaklyStable, true) => {
                 "weakly stable: zero-stable, with further roots on the unit circle"
             }
-            RootCondition::Unstable => "NOT zero-stable: for study only, no plan runs on it",
+            (RootCondition::WeaklyStable, false) => {
+                "weakly stable: roots on the unit circle; z = 1, a root of every consistent row, is none of them"
+            }
+            (RootCondition::Unstable, _) if self.root_moduli.first().is_some_and(|most| *most > OUTSIDE) => {
+                "NOT zero-stable, a root outside the unit circle: for study only, no plan runs on it"
+            }
+            (RootCondition::Unstable, _) => {
+                "NOT zero-stable, a repeated root on the unit circle: for study only, no plan runs on it"
+            }
         }
+    }
+
+    /// What is promised of arms, where there is a stable loop to begin with.
+    fn in_control(&self, p: usize) -> Option<String> {
+        let has_range = self.facts.h_max.unbounded || self.facts.h_max.value.is_some_and(|end| end > 0.0);
+        let runs = self.facts.explicit && self.facts.strictly_zero_stable && has_range;
+        runs.then(|| format!("task error O(sigma^{}) at fixed h, O(sigma^{p}) at fixed gain", p + 1))
     }
 
     fn text(&self) -> String {
@@ -261,17 +289,17 @@ impl Card {
             if self.facts.explicit { "explicit" } else { "implicit" },
             if self.facts.split { ", split feedback" } else { "" },
         ];
-        line("kind", &format!("{} steps, {}", self.facts.steps, kind.concat()));
-        match (self.facts.order, &self.facts.error_constant, &self.per_step_constant) {
+        let steps = if self.facts.steps == 1 { "step" } else { "steps" };
+        line("kind", &format!("{} {steps}, {}", self.facts.steps, kind.concat()));
+        match (&self.facts.order, &self.facts.error_constant, &self.per_step_constant) {
             (Some(p), Some(c), Some(per_step)) => {
                 line(
                     "order",
                     &format!("{p}: x' = formula - ({c}) sigma^{p} x^({}), {per_step} per step", p + 1),
                 );
-                line(
-                    "in control",
-                    &format!("task error O(sigma^{}) at fixed h, O(sigma^{p}) at fixed gain", p + 1),
-                );
+                if let Some(promise) = self.in_control(*p) {
+                    line("in control", &promise);
+                }
             }
             _ => line("order", "none: the row is inconsistent"),
         }
@@ -281,7 +309,7 @@ impl Card {
             "root moduli",
             &self.root_moduli.iter().map(|m| format!("{m:.6}")).collect::<Vec<_>>().join(", "),
         );
-        if let Some(c) = &self.ssp_coefficient {
+        if let Some(c) = self.ssp_coefficient.as_ref().filter(|_| self.facts.order.is_some()) {
             line("SSP", &format!("{c}: keeps what Euler's method keeps, up to {c} times its step"));
         }
         self.closed_loop_lines(&mut line);
@@ -301,7 +329,12 @@ impl Card {
     }
 
     fn closed_loop_lines(&self, line: &mut impl FnMut(&str, &str)) {
-        line("feedback range", &self.facts.h_max.sentence());
+        let range = match (self.facts.order, self.facts.zero_stable) {
+            (None, _) => "none: the row is inconsistent".to_owned(),
+            (_, false) => "none: the row is not zero-stable".to_owned(),
+            _ => self.facts.h_max.sentence(),
+        };
+        line("feedback range", &range);
         self.optimum_lines(line);
         if let Some(noise) = &self.facts.noise_gain {
             line(

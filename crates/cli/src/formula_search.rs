@@ -156,8 +156,12 @@ struct Report {
     objective: String,
     seed: u64,
     complete: bool,
-    /// The best value of the objective in real numbers.
+    /// The best value of the objective that any row was exactly decided to have, whatever its denominator.
     bound: f64,
+    #[serde(skip)]
+    is_largest_best: bool,
+    #[serde(skip)]
+    denominator: u32,
     rows: Vec<Line>,
     front: Vec<Line>,
 }
@@ -210,6 +214,8 @@ impl Report {
             seed: options.seed,
             complete: outcome.complete,
             bound: outcome.bound,
+            is_largest_best: matches!(options.objective, Objective::Range | Objective::Beat(_)),
+            denominator: options.denominator,
             rows: lines(&outcome.rows),
             front: lines(&outcome.front),
         }
@@ -222,6 +228,14 @@ impl Report {
             self.rows.iter().chain(self.front.iter().filter(known)).map(|line| line.toml.as_str()).collect();
         all.join("\n")
     }
+}
+
+/// A value to six decimals, never rounded to a better one.
+fn towards_worse(value: f64, is_largest_best: bool) -> String {
+    const PLACES: f64 = 1e6;
+    let scaled = value * PLACES;
+    let worse = if is_largest_best { scaled.floor() } else { scaled.ceil() };
+    format!("{:.6}", worse / PLACES)
 }
 
 fn table(lines: &[Line]) -> Table {
@@ -246,12 +260,14 @@ impl Show for Report {
     fn text(&self) -> String {
         let toml: Vec<&str> = self.rows.iter().map(|line| line.toml.as_str()).collect();
         let mut text = format!(
-            "{} rows of {} steps and order {}, best at: {}\nin real numbers {} was reached; of fractions:\n\n{}\n{}",
+            "{} rows of {} steps and order {}, best at: {}\nthe best of all rows that were decided exactly, whatever their fractions, has {} {}; of denominators up to {}:\n\n{}\n{}",
             self.family,
             self.steps,
             self.order,
             self.objective,
-            short(self.bound),
+            if self.is_largest_best { "at least" } else { "at most" },
+            towards_worse(self.bound, self.is_largest_best),
+            self.denominator,
             table(&self.rows),
             toml.join("\n"),
         );

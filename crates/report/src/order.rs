@@ -31,9 +31,7 @@ impl OrderPage<'_> {
         let mut text = format!("{}: {what} ({}) at {ends}\n\n", self.name, self.study.measure().name());
         // Writing to a String can not fail.
         let _ = write!(text, "{}\n{}", self.summary(), self.errors(&sigmas));
-        text.push_str(
-            "slopes stand beside the finer gap; ~ pre-asymptotic, _ near the floor, ! stopped: left out\n\n",
-        );
+        text.push_str(&self.legend());
         for row in self.rows {
             let _ = writeln!(text, "{}: {}", row.id, row.seen.verdict);
             for note in &row.report.notes {
@@ -41,6 +39,19 @@ impl OrderPage<'_> {
             }
         }
         text
+    }
+
+    /// What the signs beside the errors mean, those that stand there.
+    fn legend(&self) -> String {
+        const LEFT_OUT: [Mark; 5] =
+            [Mark::PreAsymptotic, Mark::NearFloor, Mark::Unstable, Mark::NoReference, Mark::Stopped];
+        let marks = || self.rows.iter().flat_map(|row| &row.seen.marks);
+        let met = LEFT_OUT.into_iter().filter(|mark| marks().any(|found| found == mark));
+        let words: Vec<String> = met.map(|mark| format!("{} {}", sign(mark), mark.name())).collect();
+        if words.is_empty() {
+            return "slopes stand beside the finer gap\n\n".to_owned();
+        }
+        format!("slopes stand beside the finer gap; {}: left out\n\n", words.join(", "))
     }
 
     fn summary(&self) -> Table {
@@ -71,7 +82,7 @@ impl OrderPage<'_> {
             };
             cells.extend(parts.into_iter().map(order));
             cells.extend(fitted(&row.seen));
-            cells.push(format!("{:.0e}", row.seen.floor));
+            cells.push(finite(row.seen.floor).map_or_else(|| "-".to_owned(), |floor| format!("{floor:.0e}")));
             cells.push(row.seen.verdict.name().to_owned());
             table.row(cells);
         }
@@ -87,7 +98,9 @@ impl OrderPage<'_> {
         for (i, sigma) in sigmas.iter().enumerate() {
             let mut cells = vec![short(*sigma)];
             for row in self.rows {
-                cells.push(format!("{:.2e}{}", row.seen.errors[i], sign(row.seen.marks[i])));
+                let error =
+                    finite(row.seen.errors[i]).map_or_else(|| "-".to_owned(), |error| format!("{error:.2e}"));
+                cells.push(format!("{error}{}", sign(row.seen.marks[i])));
                 let slope =
                     i.checked_sub(1).map(|pair| row.seen.slopes[pair]).filter(|slope| slope.is_finite());
                 cells.push(slope.map_or_else(String::new, |slope| format!("{slope:.2}")));
@@ -107,7 +120,9 @@ impl OrderPage<'_> {
                         i.checked_sub(1).map(|pair| part.slopes[pair]).filter(|slope| slope.is_finite());
                     let slope = slope.map_or_else(String::new, |slope| format!("{slope:.6}"));
                     let (error, mark, floor) = (part.errors[i], part.marks[i].name(), part.floor);
-                    let _ = writeln!(text, "{},{key},{sigma:e},{error:e},{slope},{mark},{floor:e}", row.id);
+                    let error = finite(error).map_or_else(String::new, |error| format!("{error:e}"));
+                    let floor = finite(floor).map_or_else(String::new, |floor| format!("{floor:e}"));
+                    let _ = writeln!(text, "{},{key},{sigma:e},{error},{slope},{mark},{floor}", row.id);
                 }
             }
         }
@@ -120,6 +135,8 @@ fn sign(mark: Mark) -> &'static str {
         Mark::Used => " ",
         Mark::PreAsymptotic => "~",
         Mark::NearFloor => "_",
+        Mark::Unstable => "*",
+        Mark::NoReference => "?",
         Mark::Stopped => "!",
     }
 }

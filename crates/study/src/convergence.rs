@@ -41,6 +41,10 @@ pub enum Mark {
     PreAsymptotic,
     /// Left out: the error is within the margin of the round-off floor.
     NearFloor,
+    /// Left out: the row is unstable at this gap, because the problem is stiff.
+    Unstable,
+    /// Left out: there is nothing to compare the run with.
+    NoReference,
     /// Left out: the run stopped early, or the error is not a number.
     Stopped,
 }
@@ -52,6 +56,8 @@ impl Mark {
             Self::Used => "used",
             Self::PreAsymptotic => "pre-asymptotic",
             Self::NearFloor => "near the floor",
+            Self::Unstable => "unstable",
+            Self::NoReference => "no reference",
             Self::Stopped => "stopped",
         }
     }
@@ -80,6 +86,34 @@ pub enum Undecidable {
     },
     /// There is nothing to compare with: the reference does not converge.
     NoReference,
+    /// Two references with all digits at hand differ: nothing follows the solution to its end.
+    NotFollowed {
+        /// By how much they differ.
+        uncertainty: f64,
+        /// The largest entry of the solution.
+        scale: f64,
+    },
+    /// The runs have left a solution that they could not follow: small changes grow too much on the way.
+    Sensitive {
+        /// How many times a small change of the start has grown.
+        growth: f64,
+    },
+    /// The problem is stiff: the row is unstable at most gaps.
+    Unstable {
+        /// At how many gaps it is.
+        unstable: usize,
+        /// Of how many.
+        rungs: usize,
+        /// The largest spectral radius of the Jacobian matrix that was met \[1/s\].
+        rate: f64,
+    },
+    /// The right-hand side has fewer derivatives than the order needs.
+    NotSmooth {
+        /// Where it was seen first \[s\].
+        at: f64,
+        /// The slope of the finest pair.
+        finest: f64,
+    },
     /// Nothing was claimed, and the errors do not fall.
     NotFalling {
         /// The slope of the finest pair.
@@ -123,6 +157,13 @@ pub enum Verdict {
         /// The slope of the finest pair.
         slope: f64,
     },
+    /// Nothing was claimed; the slopes have settled.
+    Seen {
+        /// The slope of the finest pair.
+        slope: f64,
+        /// The slope of the pair before.
+        before: f64,
+    },
     /// These runs do not tell.
     Undecidable(Undecidable),
 }
@@ -149,6 +190,7 @@ impl Verdict {
             Self::Confirmed { .. } => "confirmed",
             Self::NotReached { .. } => "not reached",
             Self::Exceeded { .. } => "exceeded",
+            Self::Seen { .. } => "seen",
             Self::Undecidable(_) => "not decidable here",
         }
     }
@@ -165,6 +207,9 @@ impl fmt::Display for Verdict {
             }
             Self::Exceeded { claimed, slope } => {
                 write!(f, "order {claimed} exceeded: the finest pair has slope {slope:.3}")
+            }
+            Self::Seen { slope, before } => {
+                write!(f, "nothing is claimed; the finest two pairs have slopes {before:.3} and {slope:.3}")
             }
             Self::Undecidable(why) => write!(f, "not decidable here: {why}"),
         }
@@ -191,6 +236,22 @@ impl fmt::Display for Undecidable {
             Self::NoReference => {
                 f.write_str("the reference does not converge, so there is nothing to compare with")
             }
+            Self::NotFollowed { uncertainty, scale } => write!(
+                f,
+                "the problem is too sensitive to be followed so far: two references with 32 digits differ by {uncertainty:.1e}, where the solution measures {scale:.1e}; choose a shorter duration"
+            ),
+            Self::Sensitive { growth } => write!(
+                f,
+                "the problem is sensitive: a small change of the start has grown {growth:.1e} times at the end, and the runs have left the solution; choose a shorter duration or finer gaps"
+            ),
+            Self::Unstable { unstable, rungs, rate } => write!(
+                f,
+                "the problem is stiff: at {unstable} of {rungs} gaps the row is unstable, because its stability region does not reach gap times {rate:.1e} 1/s, the spectral radius of the Jacobian matrix; use finer gaps"
+            ),
+            Self::NotSmooth { at, finest } => write!(
+                f,
+                "the right-hand side is not smooth at t = {at:.6} s, which limits the order of every row; the finest pair has slope {finest:.3}"
+            ),
             Self::NotFalling { finest } => {
                 write!(f, "the errors do not fall: the finest pair has slope {finest:.3}")
             }
@@ -224,8 +285,8 @@ pub struct Convergence {
 }
 
 impl Convergence {
-    /// Judges `errors` at the gaps `sigmas`, coarsest first, against the order `claimed`; without a claim the
-    /// nearest whole number to the slope of the finest usable pair stands in.
+    /// Judges `errors` at the gaps `sigmas`, coarsest first, against the order `claimed`; without a claim it says what was
+    /// seen, once the slopes of the finest two pairs agree to twice the tolerance.
     ///
     /// Three neighbouring rungs, two pairs, must lie `floor_margin` times above the floor. The order is confirmed when the
     /// finest pair is within the tolerance of it and the one before within twice that. It is not reached (or
@@ -249,11 +310,27 @@ impl Convergence {
         claimed: Option<usize>,
         criteria: &Criteria,
     ) -> Self {
+        Self::judge_without(sigmas, errors, floor, claimed, criteria, &vec![None; errors.len()])
+    }
+
+    /// The same, with the rungs left out that have a mark already.
+    pub(super) fn judge_without(
+        sigmas: &[f64],
+        errors: &[f64],
+        floor: f64,
+        claimed: Option<usize>,
+        criteria: &Criteria,
+        left_out: &[Option<Mark>],
+    ) -> Self {
         assert_eq!(sigmas.len(), errors.len(), "one error per gap");
         let slope = |i: usize| (errors[i] / errors[i + 1]).ln() / (sigmas[i] / sigmas[i + 1]).ln();
         let slopes: Vec<f64> = (0..errors.len().saturating_sub(1)).map(slope).collect();
         let least = floor * criteria.floor_margin;
-        let mut marks: Vec<Mark> = errors.iter().map(|&error| mark(error, least)).collect();
+        let mut marks: Vec<Mark> = errors
+            .iter()
+            .zip(left_out)
+            .map(|(&error, known)| known.unwrap_or_else(|| mark(error, least)))
+            .collect();
         let (from, to) = finest_usable(&marks);
         let verdict = if to - from < 3 {
             Verdict::Undecidable(shortage(&marks, floor, to - from))
@@ -261,9 +338,9 @@ impl Convergence {
             let (before, finest) = (slopes[to - 3], slopes[to - 2]);
             let ratio = sigmas[to - 1] / sigmas[to - 2];
             name_pre_asymptotic(&mut marks[..to - 2], &slopes[..to - 2], finest);
-            match claimed.or_else(|| (finest >= LEAST_ORDER).then(|| finest.round() as usize)) {
+            match claimed {
                 Some(claimed) => verdict(claimed, before, finest, ratio, criteria),
-                None => Verdict::Undecidable(Undecidable::NotFalling { finest }),
+                None => unclaimed(before, finest, criteria),
             }
         };
         let (from, to) = finest_usable(&marks);
@@ -280,6 +357,17 @@ impl Convergence {
     pub fn finest_slope(&self) -> Option<f64> {
         let (from, to) = finest_usable(&self.marks);
         (to - from >= 2).then(|| self.slopes[to - 2])
+    }
+}
+
+/// What is said of slopes where nothing is claimed.
+fn unclaimed(before: f64, finest: f64, criteria: &Criteria) -> Verdict {
+    if finest < LEAST_ORDER {
+        Verdict::Undecidable(Undecidable::NotFalling { finest })
+    } else if (finest - before).abs() <= 2.0 * criteria.tolerance {
+        Verdict::Seen { slope: finest, before }
+    } else {
+        Verdict::Undecidable(Undecidable::Unsettled { before, finest })
     }
 }
 
@@ -417,12 +505,18 @@ mod tests {
     }
 
     #[test]
-    fn without_a_claim_the_nearest_whole_number_stands_in() {
+    fn without_a_claim_it_says_what_was_seen_and_confirms_nothing() {
         let sigmas = [0.1, 0.05, 0.025];
         let seen = Convergence::judge(&sigmas, &[1e-2, 2.5e-3, 6.25e-4], 0.0, None, &Criteria::default());
-        assert!(matches!(seen.verdict, Verdict::Confirmed { order: 2, .. }));
+        assert_eq!(
+            seen.verdict.to_string(),
+            "nothing is claimed; the finest two pairs have slopes 2.000 and 2.000"
+        );
+        assert!(seen.verdict.is_decided() && !seen.verdict.is_confirmed() && seen.order().is_some());
+        let between = Convergence::judge(&sigmas, &[1.0, 0.177, 0.0313], 0.0, None, &Criteria::default());
+        assert!(matches!(between.verdict, Verdict::Seen { slope, .. } if (slope - 2.5).abs() < 0.01));
         let wild = Convergence::judge(&sigmas, &[1e-2, 1e-4, 5e-5], 0.0, None, &Criteria::default());
-        assert!(!wild.verdict.is_confirmed());
+        assert!(!wild.verdict.is_decided());
         for errors in [[1e-2; 3], [1e-2, 2e-2, 4e-2]] {
             let stuck = Convergence::judge(&sigmas, &errors, 0.0, None, &Criteria::default());
             assert!(matches!(stuck.verdict, Verdict::Undecidable(Undecidable::NotFalling { .. })));

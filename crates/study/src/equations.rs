@@ -1,6 +1,8 @@
 //! Studies of initial value problems that were written as text, in doubles or with 32 digits.
 
-use super::order::{OrderReport, OrderStudy};
+use super::convergence::Mark;
+use super::ladder::Rung;
+use super::order::{Judged, OrderReport, OrderStudy};
 use super::reference::{Reference, trajectory};
 use super::samples::Errors;
 use kinstep::formula::Formula;
@@ -43,18 +45,17 @@ impl OrderStudy {
         let mut report = OrderReport::empty(self.ladder());
         report.notes.extend(reference.trouble.clone());
         let (dimension, scale) = (reference.dimension, reference.scale());
-        let mut errors = Vec::new();
+        let (mut errors, mut left_out, mut stopped) = (Vec::new(), Vec::new(), Vec::new());
         for (i, rung) in self.ladder().rungs().enumerate() {
             let states = trajectory(formula, starter, equations, self.ladder().duration(), rung.steps)?;
             let truth = reference.states.get(i).map_or(&[][..], Vec::as_slice);
-            if states.len() < (rung.steps + 1) * dimension {
-                let (sigma, steps) = (rung.sigma, states.len() / dimension - 1);
-                report.notes.push(format!(
-                    "the run at sigma = {sigma} s became infinite or NaN after {steps} of {} steps",
-                    rung.steps
-                ));
+            let whole = (rung.steps + 1) * dimension;
+            let (is_whole, is_known) = (states.len() == whole, truth.len() == whole);
+            if !is_whole {
+                stopped.push((rung, states.len() / dimension - 1));
             }
-            errors.push(if states.len() == truth.len() {
+            left_out.push((is_whole && !is_known).then_some(Mark::NoReference));
+            errors.push(if is_whole && is_known {
                 let difference = |(x, y): (&T, _)| (x.to_extended() - y).to_f64();
                 let differences: Vec<f64> =
                     states.iter().zip(truth.iter().copied()).map(difference).collect();
@@ -63,7 +64,22 @@ impl OrderStudy {
                 Errors::NONE
             });
         }
-        self.judge_formula(&mut report, &errors, T::RESOLUTION, reference.uncertainty);
+        report.notes.extend(stopped_early(&stopped, self.ladder().sigmas().len()));
+        let judged =
+            Judged { errors, left_out, resolution: T::RESOLUTION, uncertainty: reference.uncertainty };
+        self.judge_formula(&mut report, &judged);
+        self.blame(&mut report, judged, formula, equations, reference);
         Ok(report)
     }
+}
+
+/// One sentence for all runs that became infinite.
+fn stopped_early(stopped: &[(Rung, usize)], rungs: usize) -> Option<String> {
+    let (first, last) = (stopped.first()?, stopped.last()?);
+    let one = |(rung, steps): &(Rung, usize)| {
+        let t = *steps as f64 * rung.sigma;
+        format!("at sigma = {:.4e} s after {steps} of {} steps, t = {t:.4} s", rung.sigma, rung.steps)
+    };
+    let which = if stopped.len() == 1 { one(first) } else { format!("{}; ...; {}", one(first), one(last)) };
+    Some(format!("{} of {rungs} runs became infinite or NaN: {which}", stopped.len()))
 }

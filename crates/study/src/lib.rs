@@ -6,6 +6,7 @@
 //! out and why, and ends in a [`Verdict`].
 
 mod assertions;
+mod blame;
 mod convergence;
 mod equations;
 mod fit;
@@ -17,6 +18,8 @@ mod reference;
 mod round_off;
 mod samples;
 mod scenario;
+mod soundness;
+mod stability;
 #[cfg(feature = "proptest")]
 pub mod strategies;
 pub mod sweep;

@@ -1,6 +1,6 @@
 //! The study itself: a ladder, what is claimed, and runs of planners, formulas or anything else with samples.
 
-use super::convergence::{Convergence, Criteria};
+use super::convergence::{Convergence, Criteria, Mark};
 use super::ladder::{Ladder, Rung};
 use super::measure::Measure;
 use super::problem::Problem;
@@ -18,7 +18,7 @@ const STILL_FALLING: f64 = 0.6;
 /// A grid with a sample at every time of every rung may have this many times the samples of the finest rung.
 const MOST_COMMON: f64 = 16.0;
 
-/// The orders that a study is to confirm; where none is claimed, the nearest whole number stands in.
+/// The orders that a study is to confirm; where none is claimed, it says what was seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Orders {
     /// Of the solution of an ODE.
@@ -39,6 +39,17 @@ impl Orders {
     pub fn at_fixed_gain(p: usize) -> Self {
         Self { formula: Some(p), task: Some(p), joint: Some(p) }
     }
+}
+
+/// The errors of the runs of a solution of an ODE, and what they are judged by.
+pub(super) struct Judged {
+    pub(super) errors: Vec<Errors>,
+    /// The rungs that do not count, and why.
+    pub(super) left_out: Vec<Option<Mark>>,
+    /// Of the numbers that the runs are made of.
+    pub(super) resolution: f64,
+    /// Of the reference.
+    pub(super) uncertainty: f64,
 }
 
 /// What a study found.
@@ -99,6 +110,17 @@ impl OrderReport {
             Measure::MeanSquare => (&self.task_mean_square, &self.formula_mean_square),
         };
         task.as_ref().or(formula.as_ref())
+    }
+
+    /// What was seen of the solution of an ODE, by every measure.
+    pub(super) fn of_solution(&mut self) -> impl Iterator<Item = &mut Convergence> {
+        let parts = [
+            &mut self.formula,
+            &mut self.formula_steady,
+            &mut self.formula_end_point,
+            &mut self.formula_mean_square,
+        ];
+        parts.into_iter().flatten()
     }
 
     /// The kinds of error studied, by key.
@@ -282,7 +304,11 @@ impl OrderStudy {
                 Errors::NONE
             });
         }
-        self.judge_formula(&mut report, &errors, f64::EPSILON, 0.0);
+        let left_out = vec![None; errors.len()];
+        self.judge_formula(
+            &mut report,
+            &Judged { errors, left_out, resolution: f64::EPSILON, uncertainty: 0.0 },
+        );
         Ok(report)
     }
 
@@ -299,17 +325,24 @@ impl OrderStudy {
         report.task_mean_square = part(Measure::MeanSquare);
     }
 
-    /// Judges the errors of solutions of an ODE in numbers of a resolution, against a reference of an uncertainty.
-    pub(super) fn judge_formula(
-        &self,
-        report: &mut OrderReport,
-        errors: &[Errors],
-        resolution: f64,
-        uncertainty: f64,
-    ) {
+    /// Judges the errors of solutions of an ODE.
+    pub(super) fn judge_formula(&self, report: &mut OrderReport, judged: &Judged) {
         // Rounding errors of single steps add up like a random walk.
-        let floor = (floor(errors, resolution) * self.longest().sqrt()).max(uncertainty);
-        let part = |measure| Some(self.judge_measured(errors, measure, floor, self.orders.formula));
+        let rounding = floor(&judged.errors, judged.resolution) * self.longest().sqrt();
+        let floor = rounding.max(judged.uncertainty);
+        let part = |measure| {
+            let picked: Vec<f64> = judged.errors.iter().map(|errors| errors.measured(measure)).collect();
+            let sigmas = self.ladder.sigmas();
+            let claimed = self.orders.formula;
+            Some(Convergence::judge_without(
+                &sigmas,
+                &picked,
+                floor,
+                claimed,
+                &self.criteria,
+                &judged.left_out,
+            ))
+        };
         report.formula = part(Measure::Maximum);
         report.formula_steady = part(Measure::Steady);
         report.formula_end_point = part(Measure::EndPoint);
@@ -396,7 +429,7 @@ fn joint_error(plan: &Plan, reference: &Plan) -> f64 {
 /// Rough errors can be signal too, of parasitic roots for instance. That falls from rung to rung, which round-off does not.
 fn floor(errors: &[Errors], resolution: f64) -> f64 {
     let run: Vec<&Errors> = errors.iter().filter(|errors| errors.transient.is_finite()).collect();
-    let least = run.iter().map(|errors| errors.scale).fold(1.0, f64::max) * 2.0 * resolution;
+    let least = run.iter().map(|errors| errors.scale).fold(0.0, f64::max) * 2.0 * resolution;
     let last = &run[run.len().saturating_sub(3)..];
     let falls = last.windows(2).all(|pair| pair[1].jitter < STILL_FALLING * pair[0].jitter);
     match last.last() {

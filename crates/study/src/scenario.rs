@@ -1,10 +1,11 @@
 //! The order study of a scenario: its ladder, its rows, and what each row is held to.
 
-use super::convergence::{Convergence, Criteria, Undecidable, Verdict};
+use super::convergence::{Convergence, Criteria, Mark, Undecidable, Verdict};
 use super::ladder::Ladder;
 use super::measure::Measure;
 use super::order::{OrderReport, OrderStudy, Orders};
 use super::reference::Reference;
+use super::soundness;
 use kinstep::formula::{Duty, Formula, FormulaTable};
 use kinstep::integrate::{Elementary, Equations, IntegrateError, Starter};
 use kinstep::math::DoubleDouble;
@@ -61,7 +62,8 @@ pub struct RowStudy {
 impl RowStudy {
     /// Whether the finest run came to its end.
     pub fn is_finished(&self) -> bool {
-        self.seen.errors.last().is_some_and(|error| error.is_finite())
+        let ended = |(error, mark): (&f64, &Mark)| error.is_finite() || *mark == Mark::NoReference;
+        self.seen.errors.iter().zip(&self.seen.marks).next_back().is_some_and(ended)
     }
 }
 
@@ -104,8 +106,12 @@ impl ScenarioStudy {
         let table = rows.table_for("")?.clone();
         let problem = match scenario.equations()? {
             Some(equations) => {
+                let off = soundness::check(&equations, ladder.duration())
+                    .map_err(|fault| at_fault(scenario, &equations, fault))?;
                 let reference = reference(&equations, &ladder, &spec, rows)?;
-                Some((equations, reference))
+                let stated =
+                    matches!(spec.reference.as_deref(), None | Some("exact")) && equations.has_exact();
+                Some((equations, if stated { reference.less_certain(off) } else { reference }))
             }
             None => None,
         };
@@ -206,9 +212,21 @@ impl ScenarioStudy {
                 report
             }
         };
-        report.notes.splice(0..0, note);
+        report.notes.splice(0..0, note.into_iter().chain(self.without_effect()));
         report.notes.extend(limit_of_doubles(row, &report));
         Ok(report)
+    }
+
+    /// Keys of the study that say nothing about arms.
+    fn without_effect(&self) -> Vec<String> {
+        let Some(spec) = &self.scenario.study else { return Vec::new() };
+        let precision = (spec.precision == Some(Precision::Extended)).then_some(
+            "study.precision = \"extended\" has no effect: arms are run in doubles; it acts on problems",
+        );
+        let reference = spec.reference.is_some().then_some(
+            "study.reference has no effect: the task error of arms is measured itself, and their joints are compared with a run of high order; it acts on problems",
+        );
+        precision.into_iter().chain(reference).map(str::to_owned).collect()
     }
 
     fn at(&self, sigma: f64, id: &str) -> Scenario {
@@ -275,6 +293,25 @@ impl ScenarioStudy {
     }
 }
 
+/// The line of a problem that is at fault.
+fn at_fault(scenario: &Scenario, equations: &Equations, fault: soundness::Fault) -> ScenarioError {
+    let spec = scenario.problem.as_ref();
+    let lines = spec.map(|spec| match fault.list {
+        "exact" => &spec.exact,
+        "initial" => &spec.initial,
+        _ => &spec.equations,
+    });
+    let name = &equations.unknowns()[fault.unknown];
+    let is_of = |line: &String| {
+        line.split('=').next().is_some_and(|before| before.trim().trim_end_matches('\'').trim_end() == name)
+    };
+    let list = KeyPath::dotted("problem").key(fault.list);
+    let at = lines
+        .and_then(|lines| lines.iter().position(is_of))
+        .map_or_else(|| list.clone(), |line| list.index(line));
+    ScenarioError::at(ErrorKind::Scenario, &at, fault.message)
+}
+
 fn measure(kind: MeasureKind) -> Measure {
     match kind {
         MeasureKind::Maximum => Measure::Maximum,
@@ -312,22 +349,26 @@ fn chosen_rows(
             continue;
         }
         let at = match spec.formulas.iter().position(|listed| *listed == id) {
-            Some(index) if ids.is_empty() => KeyPath::dotted("study.formulas").index(index),
-            _ => KeyPath::dotted("formula"),
+            Some(index) => KeyPath::dotted("study.formulas").index(index),
+            None => KeyPath::dotted("formula"),
         };
-        let row = rows.table_for(&id)?.get(&id).map_err(|e| {
+        // What was asked for on the command line is not the scenario's fault.
+        let refuse = |kind, problem: String| {
             if ids.is_empty() {
-                ScenarioError::at(ErrorKind::Scenario, &at, e)
+                ScenarioError::at(kind, &at, problem)
             } else {
-                ScenarioError::new(ErrorKind::Scenario, format!("--formula: {e}"))
+                ScenarioError::new(kind, format!("--formula {id}: {problem}"))
             }
-        })?;
+        };
+        let table =
+            rows.table_for(&id).map_err(|e| if ids.is_empty() { e } else { refuse(e.kind, e.message) })?;
+        let row = table.get(&id).map_err(|e| refuse(ErrorKind::Scenario, e.to_string()))?;
         let runnable = if scenario.problem.is_some() || scenario.allow_unstable {
             row.runnable()
         } else {
             row.runnable_with_feedback()
         };
-        runnable.map_err(|e| ScenarioError::at(ErrorKind::Formula, &at, e))?;
+        runnable.map_err(|e| refuse(ErrorKind::Formula, e.to_string()))?;
         chosen.push(row.clone());
     }
     Ok(chosen)

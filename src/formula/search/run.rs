@@ -92,7 +92,8 @@ impl Observer for () {}
 /// What a search has found.
 #[derive(Debug, Clone)]
 pub struct Outcome {
-    /// The best value of the objective met in real numbers: what fractions of any denominator can come close to.
+    /// The best value of the objective that a row was exactly decided to have, whatever its denominator: never better than the best
+    /// there is.
     pub bound: f64,
     /// The best row within the denominators, then the simplest ones that are nearly as good.
     pub rows: Vec<Found>,
@@ -106,12 +107,18 @@ pub struct Outcome {
 const GROUP: usize = 8;
 /// So many of the best starts are refined and brought to fractions.
 const REFINED: usize = 8;
+/// So many of the refined points are decided exactly with fractions as fine as can be.
+const MOST_FINE: usize = 3;
+/// Of all denominators between two powers of two, so many candidates are decided exactly.
+const MOST_OF_OCTAVE: usize = 12;
 /// So many candidates are decided exactly before the best of them is taken: an exact decision takes a tenth of a second and more.
 const MOST_DECIDED: usize = 24;
 /// What the merit in doubles may promise too much.
 const AGREEMENT: f64 = 2e-3;
 
-/// Returns the rows that are best at an objective, exactly decided, with the best value in real numbers.
+/// Returns the rows that are best at an objective, exactly decided, with the best value that any row was confirmed to have.
+///
+/// A search with a larger denominator contains the searches with smaller ones: unless it is cut short, it finds nothing worse.
 ///
 /// # Errors
 /// [`SearchError`] when there is nothing to search or nothing was found.
@@ -146,11 +153,12 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
         refined.retain(|best| Judge::<'_>::is_acceptable(best.merit));
         let candidates = self.to_fractions(&judge, &refined);
         let rows = self.pick(&judge, candidates);
-        // Beside double roots doubles promise too much: what counts is what the exact decision confirms.
-        let mut real = refined.iter().filter(|_| !(self.stop)());
-        let real = real.find(|best| self.is_real(&judge, best)).map(|best| best.merit);
-        let best = real.into_iter().chain(rows.iter().map(|row| row.merit)).reduce(f64::min);
-        let bound = self.value(best.ok_or(SearchError::NothingFound { starts: self.options.starts })?);
+        // Beside double roots doubles promise too much: what counts is what the exact decision says.
+        let fine = refined.iter().filter(|_| !(self.stop)()).filter_map(|best| self.finest(&judge, best));
+        let best =
+            rows.iter().cloned().chain(fine.take(MOST_FINE)).min_by(|a, b| a.merit.total_cmp(&b.merit));
+        let best = best.ok_or(SearchError::NothingFound { starts: self.options.starts })?;
+        let bound = self.options.objective.value(&best.figures);
         let front = if self.options.front { self.front(&rows) } else { Vec::new() };
         Ok(Outcome { bound, rows, front, complete: !(self.stop)() })
     }
@@ -209,24 +217,23 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
         sorted(found.into_par_iter().enumerate().map(refine).collect())
     }
 
-    /// Whether the exact decision confirms a point, taken to fractions so fine that nothing is lost.
-    fn is_real(&self, judge: &Judge<'_>, best: &Best) -> bool {
+    /// The row of a point in fractions so fine that hardly anything is lost, exactly decided.
+    fn finest(&self, judge: &Judge<'_>, best: &Best) -> Option<Found> {
         const FINE: u32 = 4_000_000_000;
         let unit = self.denominators.first().copied().unwrap_or(1);
         let denominator = FINE / unit * unit;
         let fine = |u: f64| (u * f64::from(denominator)).round() as i64;
         let numerators = self.space.free(&best.point).into_iter().map(fine).collect();
         let candidate = Candidate { numerators, denominator, merit: best.merit };
-        self.confirm(judge.objective, &candidate, "bound").is_some()
+        self.decide(judge.objective, &candidate, "bound")
     }
 
     /// Fractions of every denominator near the refined points.
     fn to_fractions(&self, judge: &Judge<'_>, refined: &[Best]) -> Vec<Candidate> {
         let total = self.denominators.len();
         let mut found: Vec<Candidate> = Vec::new();
-        // Largest denominators first: if time runs out, the best are there.
-        let all: Vec<u32> = self.denominators.iter().rev().copied().collect();
-        for (k, group) in all.chunks(GROUP).enumerate() {
+        // Small denominators first: what a search with a smaller bound finds is found here too, in the same time.
+        for (k, group) in self.denominators.chunks(GROUP).enumerate() {
             if (self.stop)() && !found.is_empty() {
                 break;
             }
@@ -271,22 +278,30 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
         rows
     }
 
-    /// The first candidate whose exact figures are what doubles promised; where none of the foremost keeps its promise, the best
-    /// of them by exact figures.
+    /// The best candidate by exact figures, from small denominators to large ones: of each octave some of those that promise more than
+    /// the best so far keeps. What is decided of a denominator does not depend on larger ones.
     fn best_of(&self, judge: &Judge<'_>, candidates: &[Candidate]) -> Option<Found> {
         let word = judge.objective.word();
+        let mut rising: Vec<&Candidate> = candidates.iter().collect();
+        rising.sort_by_key(|candidate| candidate.denominator);
         let mut best: Option<Found> = None;
-        // Rows that are not even stable are refused at once and do not count.
-        let decided = candidates.iter().filter_map(|candidate| {
-            let found = self.decide(judge.objective, candidate, &word)?;
-            Some((found.merit <= candidate.merit + AGREEMENT, found))
-        });
-        for (keeps, found) in decided.take(MOST_DECIDED) {
+        let (mut octave, mut decided) = (0, 0);
+        for candidate in rising {
+            if (self.stop)() && best.is_some() {
+                break;
+            }
+            if candidate.denominator.ilog2() != octave {
+                (octave, decided) = (candidate.denominator.ilog2(), 0);
+            }
+            let promises = best.as_ref().is_none_or(|best| candidate.merit < best.merit);
+            if !promises || decided >= MOST_OF_OCTAVE {
+                continue;
+            }
+            // Rows that are not even stable are refused at once and do not count.
+            let Some(found) = self.decide(judge.objective, candidate, &word) else { continue };
+            decided += 1;
             if best.as_ref().is_none_or(|best| found.merit < best.merit) {
                 best = Some(found);
-            }
-            if keeps || (self.stop)() {
-                break;
             }
         }
         best

@@ -236,20 +236,19 @@ impl Space {
         }
     }
 
-    /// The denominators up to a bound: all where they are few, else spread evenly on a logarithmic scale.
+    /// The denominators up to a bound: all where they are few, beyond that each a fixed part larger than the one before, so that the list of a
+    /// larger bound begins with that of a smaller one.
     pub(super) fn denominators(&self, bound: u32) -> Result<Vec<u32>, SearchError> {
-        const MOST: u32 = 96;
+        const ALL: u32 = 96;
+        const GROWTH: f64 = 1.06;
         let least = self.least_denominator();
         let refuse = || SearchError::Denominator { bound, least: least.to_string() };
         let unit = least.to_u32().filter(|unit| (1..=bound).contains(unit)).ok_or_else(refuse)?;
-        let count = bound / unit;
-        if count <= MOST {
-            return Ok((1..=count).map(|k| k * unit).collect());
-        }
-        let spread = |k: u32| f64::from(count).powf(f64::from(k) / f64::from(MOST - 1)).round() as u32 * unit;
-        let mut list: Vec<u32> = (0..MOST).map(spread).collect();
-        list.dedup();
-        Ok(list)
+        let next = |&k: &u32| {
+            let grown = if k < ALL { k + 1 } else { (f64::from(k) * GROWTH).round() as u32 };
+            Some(grown).filter(|&grown| grown <= bound / unit)
+        };
+        Ok(std::iter::successors(Some(1), next).map(|k| k * unit).collect())
     }
 
     /// The exact row of the free coefficients numerators/denominator.
@@ -348,6 +347,16 @@ mod tests {
         for _ in 0..50 {
             let free = space.free(&space.start(&mut random));
             assert!(space.float_row(&free).expect("a row").parasitic_radius() < 1.0);
+        }
+    }
+
+    #[test]
+    fn a_larger_bound_has_the_denominators_of_a_smaller_one() {
+        let space = Space::new(Family::LookAhead, 4, 3).expect("a space");
+        let all = space.denominators(1_000_000).expect("denominators");
+        assert!(all.len() < 300 && all.contains(&48));
+        for bound in [6, 48, 480, 577, 2000, 100_000, 999_999] {
+            assert!(all.starts_with(&space.denominators(bound).expect("denominators")), "{bound}");
         }
     }
 

@@ -1,6 +1,6 @@
 use super::weights::{Terms, Weights};
 use crate::integrate::history::{BLOCK, History, Ring};
-use crate::integrate::scalar::Scalar;
+use crate::math::Scalar;
 use crate::math::{Kernel, with_instructions};
 use fearless_simd::{Level, Simd};
 

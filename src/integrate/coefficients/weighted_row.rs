@@ -2,7 +2,7 @@ use super::coefficients::Coefficients;
 use super::ratio::{RatioCoefficients, RatioRow};
 use super::weights::Weights;
 use crate::integrate::history::Times;
-use crate::integrate::scalar::Scalar;
+use crate::math::Scalar;
 use std::sync::Arc;
 
 /// A row with its weights, which follow the steps where the coefficients do.

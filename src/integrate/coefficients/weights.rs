@@ -1,7 +1,7 @@
 use super::ratio::RatioRow;
 use crate::formula::Formula;
-use crate::integrate::scalar::Scalar;
 use crate::math::Rational;
+use crate::math::Scalar;
 
 /// A row as the stepper uses it: what multiplies the known states and evaluations, newest first, and the new evaluation.
 ///

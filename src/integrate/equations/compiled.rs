@@ -1,9 +1,8 @@
 //! Expressions as lists of operations on a stack, and the field that they make.
 
-use super::parse::{Function, Node};
+use super::parse::{Comparison, Node};
 use crate::integrate::field::Field;
-use crate::integrate::scalar::Elementary;
-use crate::math::DoubleDouble;
+use crate::math::{DoubleDouble, Elementary, Function};
 
 #[derive(Clone, Copy, Debug)]
 enum Operation<T> {
@@ -16,7 +15,10 @@ enum Operation<T> {
     Divide,
     /// To a power, counted in halves.
     Power(i32),
-    Call(Function),
+    RealPower,
+    Compare(Comparison),
+    /// With so many arguments.
+    Call(Function, usize),
 }
 
 /// An expression ready to be evaluated.
@@ -44,7 +46,12 @@ impl<T: Elementary> Compiled<T> {
             Node::Product(a, b) => self.after(&[a, b], Operation::Multiply),
             Node::Quotient(a, b) => self.after(&[a, b], Operation::Divide),
             Node::Power(base, halves) => self.after(&[base], Operation::Power(*halves)),
-            Node::Call(function, argument) => self.after(&[argument], Operation::Call(*function)),
+            Node::RealPower(base, exponent) => self.after(&[base, exponent], Operation::RealPower),
+            Node::Compared(comparison, a, b) => self.after(&[a, b], Operation::Compare(*comparison)),
+            Node::Call(function, arguments) => {
+                arguments.iter().for_each(|argument| self.add(argument));
+                Operation::Call(*function, arguments.len())
+            }
         };
         self.operations.push(operation);
     }
@@ -65,13 +72,20 @@ impl<T: Elementary> Compiled<T> {
                 Operation::Slot(slot) => values[slot],
                 Operation::Negate => -pop(stack),
                 Operation::Power(halves) => power(pop(stack), halves),
-                Operation::Call(function) => call(function, pop(stack)),
+                Operation::Call(function, count) => {
+                    let arguments = stack.len() - count;
+                    let value = function.value(&stack[arguments..]);
+                    stack.truncate(arguments);
+                    value
+                }
                 two => {
                     let (b, a) = (pop(stack), pop(stack));
                     match two {
                         Operation::Add => a + b,
                         Operation::Subtract => a - b,
                         Operation::Multiply => a * b,
+                        Operation::RealPower => a.power(b),
+                        Operation::Compare(comparison) => compared(comparison, a, b),
                         _ => a / b,
                     }
                 }
@@ -99,14 +113,18 @@ fn power<T: Elementary>(base: T, halves: i32) -> T {
     if halves < 0 { T::one() / result } else { result }
 }
 
-fn call<T: Elementary>(function: Function, x: T) -> T {
-    match function {
-        Function::Sin => x.sin_cos().0,
-        Function::Cos => x.sin_cos().1,
-        Function::Exp => x.exp(),
-        Function::Ln => x.ln(),
-        Function::Sqrt => x.sqrt(),
-    }
+/// One where the comparison holds, zero where it does not; NaN where a side is NaN.
+fn compared<T: Elementary>(comparison: Comparison, a: T, b: T) -> T {
+    let Some(order) = a.partial_cmp(&b) else { return a + b };
+    let holds = match comparison {
+        Comparison::Less => order.is_lt(),
+        Comparison::LessOrEqual => order.is_le(),
+        Comparison::Greater => order.is_gt(),
+        Comparison::GreaterOrEqual => order.is_ge(),
+        Comparison::Equal => order.is_eq(),
+        Comparison::Unequal => order.is_ne(),
+    };
+    if holds { T::one() } else { T::zero() }
 }
 
 /// The right-hand side of [`Equations`](super::Equations) in numbers of one kind, with the memory that it needs.
@@ -117,6 +135,7 @@ pub struct EquationField<T> {
     pub(super) dimension: usize,
     pub(super) definitions: Vec<Compiled<T>>,
     pub(super) derivatives: Vec<Compiled<T>>,
+    pub(super) switches: Vec<Compiled<T>>,
     pub(super) values: Vec<T>,
     pub(super) stack: Vec<T>,
 }
@@ -127,13 +146,33 @@ impl<T: Elementary> Field<T> for EquationField<T> {
     }
 
     fn evaluate(&mut self, t: T, x: &[T], f: &mut [T], _g: &mut [T]) {
+        self.go_to(t, x);
+        for (derivative, out) in self.derivatives.iter().zip(f) {
+            *out = derivative.value(&self.values, &mut self.stack);
+        }
+    }
+}
+
+impl<T: Elementary> EquationField<T> {
+    /// Writes the quantities at `t` and `x` at whose changes of sign the right-hand side is not smooth, one for each of
+    /// [`Equations::switches`](super::Equations::switches).
+    ///
+    /// # Panics
+    /// If `x` or `quantities` has another length.
+    pub fn switches(&mut self, t: T, x: &[T], quantities: &mut [T]) {
+        assert_eq!(quantities.len(), self.switches.len(), "one number per switch");
+        self.go_to(t, x);
+        for (switch, out) in self.switches.iter().zip(quantities) {
+            *out = switch.value(&self.values, &mut self.stack);
+        }
+    }
+
+    /// Gives every variable and definition its value.
+    fn go_to(&mut self, t: T, x: &[T]) {
         self.values[0] = t;
         self.values[1..=self.dimension].copy_from_slice(x);
         for (k, definition) in self.definitions.iter().enumerate() {
             self.values[1 + self.dimension + k] = definition.value(&self.values, &mut self.stack);
-        }
-        for (derivative, out) in self.derivatives.iter().zip(f) {
-            *out = derivative.value(&self.values, &mut self.stack);
         }
     }
 }

@@ -3,6 +3,7 @@
 mod compiled;
 mod parse;
 mod problem;
+mod token;
 
 pub use compiled::EquationField;
 pub use problem::{EquationError, EquationText, Equations};

@@ -1,8 +1,8 @@
 //! An initial value problem: equations, initial values and, where it is known, the solution.
 
 use super::compiled::{Compiled, EquationField};
-use super::parse::{Function, Meaning, Node, parse};
-use crate::integrate::scalar::Elementary;
+use super::parse::{Meaning, Node, Switch, parse};
+use crate::math::{Elementary, Function};
 use std::collections::HashSet;
 use thiserror::Error;
 
@@ -32,6 +32,8 @@ pub struct EquationError {
     pub list: &'static str,
     /// Which line of it, from 0; nothing where the list as a whole is meant.
     pub line: Option<usize>,
+    /// Where in the line the token at fault begins, in characters from 1.
+    pub column: Option<usize>,
     /// The sentence.
     pub message: String,
 }
@@ -59,6 +61,7 @@ pub struct Equations {
     derivatives: Vec<Node>,
     initial: Vec<Node>,
     exact: Option<Vec<Node>>,
+    switches: Vec<Switch>,
 }
 
 impl Equations {
@@ -72,30 +75,33 @@ impl Equations {
         let equations = lines("equations", &text.equations, true)?;
         if equations.is_empty() || equations.len() > MOST_UNKNOWNS {
             let message = format!("a problem has 1 to {MOST_UNKNOWNS} equations such as \"x' = -x\"");
-            return Err(EquationError { list: "equations", line: None, message });
+            return Err(EquationError { list: "equations", line: None, column: None, message });
         }
         for (line, (name, _)) in equations.iter().enumerate() {
             names.add("equations", line, name)?;
         }
         let unknowns: Vec<String> = equations.iter().map(|(name, _)| (*name).to_owned()).collect();
-        let mut definitions = Vec::new();
+        let (mut definitions, mut switches) = (Vec::new(), Vec::new());
         for (line, (name, expression)) in lines("where", &text.definitions, false)?.into_iter().enumerate() {
-            definitions.push(names.read("where", line, expression, names.variables.len())?);
+            let (node, switch) = names.read("where", line, expression, names.variables.len())?;
+            definitions.push(node);
+            switches.extend(switch);
             names.add("where", line, name)?;
         }
         let all = names.variables.len();
-        let derivatives = equations
-            .iter()
-            .enumerate()
-            .map(|(line, (_, expression))| names.read("equations", line, expression, all))
-            .collect::<Result<_, _>>()?;
+        let mut derivatives = Vec::new();
+        for (line, (_, expression)) in equations.iter().enumerate() {
+            let (node, switch) = names.read("equations", line, *expression, all)?;
+            derivatives.push(node);
+            switches.extend(switch);
+        }
         let initial = names.for_unknowns("initial", &text.initial, &unknowns, 0)?;
         let exact = if text.exact.is_empty() {
             None
         } else {
             Some(names.for_unknowns("exact", &text.exact, &unknowns, 1)?)
         };
-        Ok(Self { unknowns, definitions, derivatives, initial, exact })
+        Ok(Self { unknowns, definitions, derivatives, initial, exact, switches })
     }
 
     /// The unknowns, in the order of the entries of a state.
@@ -108,6 +114,12 @@ impl Equations {
         self.exact.is_some()
     }
 
+    /// The parts of the right-hand side that are not smooth where they switch, as they were written: `abs(x)`, `sign(x)`, `min(x, y)`,
+    /// comparisons. [`EquationField::switches`] has the quantities that change their signs there.
+    pub fn switches(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.switches.iter().map(|switch| switch.text.as_str())
+    }
+
     /// The right-hand side.
     pub fn field<T: Elementary>(&self) -> EquationField<T> {
         let dimension = self.unknowns.len();
@@ -115,6 +127,7 @@ impl Equations {
             dimension,
             definitions: self.definitions.iter().map(Compiled::of).collect(),
             derivatives: self.derivatives.iter().map(Compiled::of).collect(),
+            switches: self.switches.iter().map(|switch| Compiled::of(&switch.quantity)).collect(),
             values: vec![T::zero(); 1 + dimension + self.definitions.len()],
             stack: Vec::new(),
         }
@@ -143,27 +156,36 @@ fn values<T: Elementary>(nodes: &[Node], t: T) -> Vec<T> {
     nodes.iter().map(|node| Compiled::of(node).value(&[t], &mut stack)).collect()
 }
 
+/// An expression and where it begins in its line, in characters from 0.
+#[derive(Clone, Copy)]
+struct Expression<'t> {
+    text: &'t str,
+    start: usize,
+}
+
 /// Splits `name = expression` (or `name' = expression`) lines.
 fn lines<'t>(
     list: &'static str,
     lines: &'t [String],
     primed: bool,
-) -> Result<Vec<(&'t str, &'t str)>, EquationError> {
+) -> Result<Vec<(&'t str, Expression<'t>)>, EquationError> {
     let split = |(line, text): (usize, &'t String)| {
         let form = if primed { "x' = expression" } else { "x = expression" };
         let refuse = || EquationError {
             list,
             line: Some(line),
+            column: Some(1),
             message: format!("\"{text}\" is not of the form `{form}`"),
         };
-        let (name, expression) = text.split_once('=').ok_or_else(refuse)?;
-        let name = name.trim();
+        let (before, expression) = text.split_once('=').ok_or_else(refuse)?;
+        let name = before.trim();
         let name = if primed { name.strip_suffix('\'').map(str::trim_end) } else { Some(name) };
         let is_name = |name: &&str| {
             let mut characters = name.chars();
             characters.next().is_some_and(|c| c.is_alphabetic() || c == '_')
                 && characters.all(|c| c.is_alphanumeric() || c == '_')
         };
+        let expression = Expression { text: expression, start: before.chars().count() + 1 };
         Ok((name.filter(is_name).ok_or_else(refuse)?, expression))
     };
     lines.iter().enumerate().map(split).collect()
@@ -186,12 +208,12 @@ impl Names {
     }
 
     fn check(&self, list: &'static str, line: Option<usize>, name: &str) -> Result<(), EquationError> {
-        let reserved = name == "pi" || Function::NAMES.iter().any(|(known, _)| *known == name);
+        let reserved = name == "pi" || Function::named(name).is_some();
         let taken =
             self.variables.iter().chain(self.parameters.iter().map(|(name, _)| name)).any(|n| n == name);
         if reserved || taken {
             let message = format!("\"{name}\" already means something else; choose another name");
-            return Err(EquationError { list, line, message });
+            return Err(EquationError { list, line, column: line.map(|_| 1), message });
         }
         Ok(())
     }
@@ -207,9 +229,9 @@ impl Names {
         &self,
         list: &'static str,
         line: usize,
-        expression: &str,
+        expression: Expression<'_>,
         visible: usize,
-    ) -> Result<Node, EquationError> {
+    ) -> Result<(Node, Vec<Switch>), EquationError> {
         let meaning = |name: &str| {
             if let Some(slot) = self.variables[..visible].iter().position(|known| known == name) {
                 return Ok(Meaning::Slot(slot));
@@ -226,8 +248,10 @@ impl Names {
                 .collect();
             Err(format!("\"{name}\" means nothing here; known are {}", known.join(", ")))
         };
-        let message = |message| EquationError { list, line: Some(line), message };
-        parse(expression, &meaning).map_err(message)
+        parse(expression.text, &meaning).map_err(|error| {
+            let column = expression.start + error.column + 1;
+            EquationError { list, line: Some(line), column: Some(column), message: error.message }
+        })
     }
 
     /// Reads one expression for every unknown, in their order, whatever order the lines have.
@@ -246,7 +270,7 @@ impl Names {
                     "\"{name}\" is not an unknown, or stands here twice; the unknowns are {}",
                     unknowns.join(", ")
                 );
-                return Err(EquationError { list, line: Some(line), message });
+                return Err(EquationError { list, line: Some(line), column: Some(1), message });
             }
         }
         unknowns
@@ -256,9 +280,10 @@ impl Names {
                     found.iter().position(|(name, _)| name == unknown).ok_or_else(|| EquationError {
                         list,
                         line: None,
+                        column: None,
                         message: format!("there is no line for the unknown \"{unknown}\""),
                     })?;
-                self.read(list, line, found[line].1, visible)
+                self.read(list, line, found[line].1, visible).map(|(node, _)| node)
             })
             .collect()
     }
@@ -307,6 +332,14 @@ mod tests {
             ("-(x - t)", -1.0),
             ("ln(exp(x))", 3.0),
             ("sin(pi/2) + cos(0*x)", 2.0),
+            ("abs(-x) + sign(-x)*sign(t)", 2.0),
+            ("min(x, t) + 10*max(x, t, 5)", 52.0),
+            ("tan(atan(x)) + atan2(0, -1)/pi", 4.0),
+            ("asin(1) + acos(0)", std::f64::consts::PI),
+            ("sinh(x)/cosh(x) - tanh(x)", 0.0),
+            ("t^x + x^(1/3)*x^(2/3) + t^0.1*t^-0.1", 12.0),
+            ("(x < t) + 10*(x >= t) + 100*(x == 3) + 1000*(x != 3)", 110.0),
+            ("t + x > 4", 1.0),
         ] {
             assert!((value(text, 2.0, 3.0) - expected).abs() < 1e-14, "{text}: {}", value(text, 2.0, 3.0));
         }
@@ -320,24 +353,96 @@ mod tests {
         assert!((f[0] * DoubleDouble::from(10.0) - DoubleDouble::from(1.0)).to_f64().abs() < 1e-31);
     }
 
+    /// The digits are those of an arithmetic with 180 of them.
+    #[test]
+    fn every_function_has_thirty_digits_in_extended_precision() {
+        for (text, digits) in [
+            ("asin(0.7)", "0.77539749661075306374035335271498711356"),
+            ("asin(-0.99)", "-1.4292568534704694004855323346647244271"),
+            ("asin(0.001)", "0.0010000001666667416667113095541914906261"),
+            ("acos(0.7)", "0.79539883018414355549096833892476432854"),
+            ("acos(-0.99)", "3.0000531802653660197168540263044758692"),
+            ("acos(0.999)", "0.044725087168733431249696232671551069904"),
+            ("ln(1.0009765625)", "0.00097608597305545889596082490801718667261"),
+            ("ln(0.3)", "-1.203972804325935992622746217761838503"),
+            ("ln(7e5)", "13.458835614025541725195310016865000768"),
+            ("exp(-0.001)", "0.9990004998333749916680553571676559747"),
+            ("exp(1.3)", "3.6692966676192442204574899160114862514"),
+            ("exp(40.5)", "388084696243620324.02317218757269945334"),
+            ("sinh(0.001)", "0.0010000001666666750000001984127011684304"),
+            ("sinh(0.9)", "1.0265167257081752759583361619784223538"),
+            ("sinh(20)", "242582597.70489513795397660405149136536"),
+            ("tanh(0.001)", "0.00099999966666679999994603176790122570467"),
+            ("tanh(-0.9)", "-0.71629787019902442081144378305809486317"),
+            ("tanh(9)", "0.99999996954004097447930211118358239753"),
+            ("tan(0.3)", "0.30933624960962323303530367969829466726"),
+            ("tan(1.4)", "5.797883715482889643707720243603699046"),
+            ("tan(-2)", "2.1850398632615189916433061023136825434"),
+            ("atan(0.001)", "0.00099999966666686666652380963492054401162"),
+            ("atan(-3)", "-1.2490457723982544258299170772810901231"),
+            ("atan(1e6)", "1.5707953267948966195646550249728847754"),
+            ("sin(3.14159)", "0.0000026535897932353484174726298024211452225"),
+            ("sin(0.25)", "0.24740395925452292959684870484938919589"),
+            ("sin(100)", "-0.50636564110975879365655761045978543207"),
+            ("cos(1.5707)", "0.000096326794747652228535096823231605124118"),
+            ("cos(0.25)", "0.9689124217106447841445954494941891998"),
+            ("cos(-100)", "0.86231887228768393410193851395084253551"),
+            ("cosh(0.1)", "1.0050041680558035989879784429683416447"),
+            ("cosh(3)", "10.067661995777765841953936035115889837"),
+            ("cosh(-30)", "5343237290762.2310734952343721588156692"),
+            ("sqrt(2)", "1.4142135623730950488016887242096980786"),
+            ("sqrt(0.1)", "0.31622776601683793319988935444327185337"),
+            ("sqrt(1e10)", "100000.0"),
+            ("2^(0.1)", "1.0717734625362931642130063250233420229"),
+            ("0.3^(-7.25)", "6178.3271824738655417700054334507638845"),
+            ("1.5^(pi)", "3.5744317230367653203349838630341995935"),
+            ("10^(1/3)", "2.1544346900318837217592935665193504953"),
+            ("atan2(1, -2)", "2.6779450445889871222483871518182884822"),
+            ("atan2(-0.001, -3)", "-3.1412593202688055833186105267898506261"),
+        ] {
+            let equations = of(&format!("x' = {text}")).unwrap();
+            let mut f = [DoubleDouble::from(0.0)];
+            equations.field().evaluate(f[0], &equations.initial::<DoubleDouble>(), &mut f, &mut []);
+            let known = DoubleDouble::from_rational(&crate::math::parse_rational(digits).unwrap());
+            let off = (f[0] - known).to_f64().abs() / known.to_f64().abs().max(1.0);
+            assert!(off < 1e-30, "{text}: {off:e}");
+        }
+    }
+
+    #[test]
+    fn what_may_switch_is_known_with_its_quantity() {
+        let equations = of("x' = abs(x - 1) + min(t, 2*x)*(s2 <= 5) + sin(x)").unwrap();
+        assert_eq!(equations.switches().collect::<Vec<_>>(), ["abs(x - 1)", "min(t, 2*x)", "s2 <= 5"]);
+        let mut quantities = [0.0; 3];
+        equations.field().switches(1.0, &[3.0], &mut quantities);
+        assert_eq!(quantities, [2.0, -5.0, 5.0]);
+        assert_eq!(of("x' = sqrt(x)").unwrap().switches().len(), 0);
+    }
+
     #[test]
     fn what_does_not_read_is_refused_with_a_reason() {
-        for (text, reason) in [
-            ("x' = y", "\"y\" means nothing here; known are t, x, s, s2, a, sin"),
-            ("x' = 2 +", "ends where"),
-            ("x' = (2", "not closed"),
-            ("x' = 2 3", "`3` can not stand here"),
-            ("x' = 2^x", "exponent is a whole number"),
-            ("x' = 2^(1/0)", "exponent is a whole number"),
-            ("x' = sin x", "needs its argument"),
-            ("x' = 1.2.3", "second decimal point"),
-            ("x = 2", "not of the form `x' = expression`"),
-            ("t' = 2", "already means something else"),
-            ("a' = 2", "already means something else"),
-            ("x' = x!", "`!` can not stand"),
+        for (text, column, reason) in [
+            ("x' = y", 6, "\"y\" means nothing here; known are t, x, s, s2, a, sin"),
+            ("x' = 2 +", 9, "ends where"),
+            ("x' = (2", 6, "not closed"),
+            ("x' = (2, 3)", 8, "`,` stands where the parenthesis should be closed"),
+            ("x' = 2 3", 8, "`3` can not stand here"),
+            ("x' = 2^(1/0)", 10, "divides by zero"),
+            ("x' = t + sin x", 10, "needs its argument"),
+            ("x' = 1.2.3", 6, "second decimal point"),
+            ("x = 2", 1, "not of the form `x' = expression`"),
+            ("t' = 2", 1, "already means something else"),
+            ("abs' = 2", 1, "already means something else"),
+            ("a' = 2", 1, "already means something else"),
+            ("x' = x!", 7, "`!` can not stand"),
+            ("x' = x = 2", 8, "compared with =="),
+            ("x' = 1 < x < 2", 12, "two comparisons in a row"),
+            ("x' = t*min(x)", 8, "min takes two arguments or more, separated by commas; 1 given"),
+            ("x' = atan2(x, t, 1)", 6, "atan2 takes two arguments, atan2(y, x); 3 given"),
         ] {
             let error = of(text).unwrap_err();
             assert!(error.message.contains(reason), "{text}: {error}");
+            assert_eq!(error.column, Some(column), "{text}");
             assert_eq!(error.list, "equations");
         }
         assert!(of(&format!("x' = {}x{}", "(".repeat(99), ")".repeat(99))).is_err());
@@ -349,7 +454,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_text_makes_the_reader_panic(text in "[xta0-9.+*/^()' =sincoe-]{0,30}") {
+        fn no_text_makes_the_reader_panic(text in "[xta0-9.+*/^()' =<>,sincoemabx-]{0,30}") {
             let _ = of(&text);
             let _ = of(&format!("x' = {text}"));
         }

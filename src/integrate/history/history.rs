@@ -1,7 +1,7 @@
 use super::ring::{BLOCK, Ring};
 use super::times::Times;
 use crate::integrate::field::Field;
-use crate::integrate::scalar::Scalar;
+use crate::math::Scalar;
 
 /// Where a component comes from: the index of a history among several, and its index there.
 pub(crate) type Origin = (usize, usize);

@@ -1,4 +1,4 @@
-use crate::integrate::scalar::Scalar;
+use crate::math::Scalar;
 
 /// The times of the samples of a history, and the step that is to follow.
 ///

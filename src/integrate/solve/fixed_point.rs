@@ -1,7 +1,7 @@
 use crate::integrate::affine::{Affine, Solved};
 use crate::integrate::field::{Field, Parts};
-use crate::integrate::scalar::Scalar;
 use crate::math::Rational;
+use crate::math::Scalar;
 use num_traits::Zero;
 
 /// Iterations before it is given up.

@@ -2,7 +2,7 @@
 
 use crate::integrate::error::{IntegrateError, check_length};
 use crate::integrate::history::Origin;
-use crate::integrate::scalar::Scalar;
+use crate::math::Scalar;
 
 /// The states `x_1, x_2, ...`.
 #[derive(Clone, Debug)]

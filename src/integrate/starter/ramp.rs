@@ -3,8 +3,8 @@
 use super::paper;
 use crate::formula::{Formula, FormulaTable};
 use crate::integrate::coefficients::Weights;
-use crate::integrate::scalar::Scalar;
 use crate::math::Rational;
+use crate::math::Scalar;
 
 /// What a start by rows is made for.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use super::tableau::Tableau;
 use crate::integrate::field::{Field, Parts};
-use crate::integrate::scalar::Scalar;
+use crate::math::Scalar;
 
 /// A tableau with the memory its stages need.
 #[derive(Clone, Debug)]

@@ -11,8 +11,8 @@ use crate::integrate::error::IntegrateError;
 use crate::integrate::field::Field;
 use crate::integrate::history::{History, Origin};
 use crate::integrate::method::Method;
-use crate::integrate::scalar::Scalar;
 use crate::math::Rational;
+use crate::math::Scalar;
 use num_traits::One;
 
 /// A starter at work, with the memory that it needs.

@@ -1,5 +1,5 @@
-use crate::integrate::scalar::Scalar;
 use crate::math::Rational;
+use crate::math::Scalar;
 
 /// An explicit Runge-Kutta tableau, used to start multistep rows.
 ///

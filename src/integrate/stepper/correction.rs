@@ -3,9 +3,9 @@ use crate::integrate::coefficients::{WeightedRow, combine};
 use crate::integrate::field::{Field, Parts};
 use crate::integrate::history::{BLOCK, History};
 use crate::integrate::method::{Method, Mode};
-use crate::integrate::scalar::Scalar;
 use crate::integrate::solve::FixedPoint;
 use crate::integrate::status::Status;
+use crate::math::Scalar;
 use fearless_simd::Level;
 
 /// How a candidate becomes the next state in methods that are not explicit, with the memory for it.

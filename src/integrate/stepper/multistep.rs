@@ -7,9 +7,9 @@ use crate::integrate::error::{IntegrateError, check_length};
 use crate::integrate::field::{Field, Parts};
 use crate::integrate::history::{BLOCK, Depths, History, Origin, Times};
 use crate::integrate::method::Method;
-use crate::integrate::scalar::Scalar;
 use crate::integrate::starter::{RunningStarter, Starter};
 use crate::integrate::status::Status;
+use crate::math::Scalar;
 use fearless_simd::Level;
 
 /// The stepper: a method, its history, and the start that fills it.

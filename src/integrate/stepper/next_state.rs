@@ -1,7 +1,7 @@
 use super::multistep::Multistep;
 use crate::integrate::coefficients::{Terms, Weights};
 use crate::integrate::history::Ring;
-use crate::integrate::scalar::Scalar;
+use crate::math::Scalar;
 
 impl<T: Scalar> Multistep<T> {
     /// Writes what the history contributes to the state after `x_n`, and returns what the two parts of the derivative at `x_n`

@@ -273,3 +273,43 @@ fn the_reproduction_is_written_with_its_trajectories() {
     assert_eq!(pages, 8, "{names:?}");
     desk.run(&["reproduce", "--out", "paper"]).expect(6);
 }
+
+#[test]
+fn a_card_says_of_roots_and_loops_only_what_is_so() {
+    let card = |arguments: &[&str]| kinstep(&[&["formula", "show"], arguments].concat()).out;
+    let typo = card(&["--difference", "24,-5,-12,-6,-4,4", "--denominator", "48"]);
+    for said in [
+        "all roots inside the unit circle; z = 1, a root of every consistent row, is none of them",
+        "feedback range  none: the row is inconsistent",
+        "with 3 in place of 4 as coefficient 6 it is (24, -5, -12, -6, -4, 3) / 48",
+    ] {
+        assert!(typo.contains(said), "{said}\n{typo}");
+    }
+    assert!(!typo.contains("only z = 1") && !typo.contains("in control"), "{typo}");
+    let turned = card(&["--difference", "3,-4,-6,-12,-5,24", "--denominator", "48"]);
+    assert!(
+        turned.contains("oldest sample first; newest first it is (24, -5, -12, -6, -4, 3) / 48"),
+        "{turned}"
+    );
+    assert!(turned.contains("a root outside the unit circle"), "{turned}");
+    let right = card(&["--difference", "24,-5,-12,-6,-4,3", "--denominator", "48"]);
+    assert!(right.contains("with only z = 1 on the unit circle") && right.contains("in control"), "{right}");
+    assert!(!right.contains("remark"), "{right}");
+    let double = card(&["--alpha", "1,-2,1", "--beta", "0,1,-1"]);
+    assert!(double.contains("a repeated root on the unit circle") && !double.contains("SSP"), "{double}");
+    let weak = card(&["la3-leapfrog"]);
+    assert!(weak.contains("further roots on the unit circle") && !weak.contains("in control"), "{weak}");
+}
+
+#[test]
+fn decimals_that_are_exact_in_binary_are_read_without_quotes() {
+    let row = |beta: &str| {
+        format!(
+            "[[formula]]\nid = \"mine\"\nalpha = [1, -1, 0]\nbeta = [0, 1.5, {beta}]\norder = 2\nerror_constant = \"5/12\"\nzero_stable = true\nsource = \"nowhere\"\n"
+        )
+    };
+    let desk = Desk::new(&[("half.toml", &row("-0.5")), ("tenth.toml", &row("-0.1"))]);
+    desk.run(&["formula", "check", "half.toml"]).expect(0);
+    let refused = desk.run(&["formula", "check", "tenth.toml", "--json"]).expect(4).error();
+    assert!(refused["message"].as_str().unwrap().contains("already been rounded"), "{refused}");
+}

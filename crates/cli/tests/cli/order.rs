@@ -101,7 +101,16 @@ fn problems_come_by_name_and_from_files() {
     let desk = Desk::new(&[("bad.toml", bad)]);
     let error = desk.run(&["order", "bad.toml", "--json"]).expect(2).error();
     assert!(error["message"].as_str().unwrap().contains("\"y\" means nothing here"), "{error}");
-    assert_eq!((&error["line"], &error["column"]), (&4.into(), &14.into()), "{error}");
+    // The token itself is pointed at.
+    assert_eq!((&error["line"], &error["column"]), (&4.into(), &19.into()), "{error}");
+    let error =
+        kinstep(&["order", "problems/kepler.toml", "--formula", "nosuch", "--json"]).expect(2).error();
+    assert!(error["message"].as_str().unwrap().starts_with("--formula nosuch: "), "{error}");
+    let error = kinstep(&["order", "problems/kepler.toml", "--formula", "bdf2", "--json"]).expect(4).error();
+    assert!(
+        error["message"].as_str().unwrap().starts_with("--formula bdf2: ") && error["line"].is_null(),
+        "{error}"
+    );
 }
 
 const VARY: [&str; 6] = [
@@ -204,4 +213,21 @@ fn a_sweep_says_what_is_wrong_before_it_runs_and_keeps_refusals_in_the_table() {
     std::fs::write(desk.path("b.csv.journal"), "kinstep sweep of something else\n").unwrap();
     let error = sweep(&["--vary", "law.h=0.3", "--out", "b.csv"]).expect(6).error();
     assert!(error["message"].as_str().unwrap().contains("of another sweep"), "{error}");
+}
+
+#[test]
+fn what_can_not_be_compared_has_no_numbers_and_keys_without_effect_are_named() {
+    let blowing = "sigma = 0.01\nduration = 2.0\nformula = \"ab4\"\n[problem]\nequations = [\"x' = x^2\"]\ninitial = [\"x = 1\"]\n";
+    let desk = Desk::new(&[("b.toml", blowing), ("s.toml", SMALL)]);
+    let run = desk.run(&["order", "b.toml", "--out", "study"]).expect(5);
+    assert!(
+        run.out.contains("leaves all bounds") && !run.out.contains("NaN!") && !run.out.contains("inf"),
+        "{}",
+        run.out
+    );
+    let csv = std::fs::read_to_string(desk.path("study/order-b.csv")).unwrap();
+    assert!(!csv.contains("NaN") && !csv.contains("inf"), "{csv}");
+    let extended = ["--set", "study.precision=extended", "--set", "study.steps=[100, 200, 400]"];
+    let run = desk.run(&[&["order", "s.toml"], &extended[..]].concat()).expect(0);
+    assert!(run.out.contains("study.precision = \"extended\" has no effect"), "{}", run.out);
 }

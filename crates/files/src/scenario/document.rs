@@ -147,7 +147,10 @@ impl ScenarioText {
                 error.message = format!("{} (--set {assignment})", error.message);
                 error
             }
-            None => error.or_placed(self.place(&path)),
+            None => {
+                let place = self.place(&path).map(|place| within(place, error.column));
+                error.or_placed(place)
+            }
         }
     }
 
@@ -214,6 +217,16 @@ impl ScenarioText {
         }
         self.placed(refusal)
     }
+}
+
+/// The place of a character of a text that begins, with its quote, at `place`. A text with escapes or of several lines is pointed at as a whole.
+fn within(mut place: Place, column: Option<usize>) -> Place {
+    let inside: Vec<char> = place.source_line.chars().skip(place.column).take(column.unwrap_or(0)).collect();
+    if column.is_some_and(|column| inside.len() == column) && !inside.iter().any(|c| matches!(c, '\\' | '"'))
+    {
+        place.column += inside.len();
+    }
+    place
 }
 
 /// Returns what the reader said, in the words of people who write TOML.

@@ -61,6 +61,8 @@ pub struct ScenarioError {
     pub path: Option<KeyPath>,
     /// Where that key, or the offending text, stands.
     pub place: Option<Box<Place>>,
+    /// Which character of the text at that key is meant, from 1, where it is not the first.
+    pub column: Option<usize>,
     /// The file that the sentence is about as a whole, where it can not be read.
     pub file: Option<String>,
     /// What else is wrong, where more than one thing was found.
@@ -70,7 +72,15 @@ pub struct ScenarioError {
 impl ScenarioError {
     /// Returns a refusal without a place.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
-        Self { kind, message: message.into(), path: None, place: None, file: None, also: Vec::new() }
+        Self {
+            kind,
+            message: message.into(),
+            path: None,
+            place: None,
+            column: None,
+            file: None,
+            also: Vec::new(),
+        }
     }
 
     /// Returns a refusal of the value at `path`; the sentence begins with the path.

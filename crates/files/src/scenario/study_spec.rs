@@ -16,7 +16,8 @@ const MOST_RUNGS: usize = 64;
 const MOST_STEPS: usize = 10_000_000;
 
 /// An initial value problem x' = f(t, x) from t = 0, in place of arms. Lines are `name = expression`; expressions
-/// have numbers, names, `t`, `pi`, + - * / ^, parentheses, sin, cos, exp, ln and sqrt.
+/// have numbers, names, `t`, `pi`, + - * / ^, comparisons (1 where they hold, else 0), parentheses and sin, cos, tan, asin, acos,
+/// atan, atan2, sinh, cosh, tanh, exp, ln, sqrt, abs, sign, min and max.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table [problem] with equations and initial")]
@@ -123,7 +124,10 @@ impl ProblemSpec {
         Equations::parse(&text).map_err(|error| {
             let list = KeyPath::dotted("problem").key(error.list);
             let at = error.line.map_or_else(|| list.clone(), |line| list.index(line));
-            ScenarioError::at(ErrorKind::Scenario, &at, error.message)
+            ScenarioError {
+                column: error.column,
+                ..ScenarioError::at(ErrorKind::Scenario, &at, error.message)
+            }
         })
     }
 }

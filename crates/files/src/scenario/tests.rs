@@ -116,7 +116,7 @@ fn a_wrong_type_and_a_bad_expression_are_refused_where_they_stand() {
     let error = refused(&SMALL.replace("\"9*pi/10\"", "\"9*pie/10\""));
     assert_eq!(
         error.message,
-        "arm.left.q0[0]: \"9*pie/10\", column 3: 'pie' is not known; the only name is pi"
+        "arm.left.q0[0]: \"9*pie/10\", column 3: 'pie' is not known; known are pi and functions such as sin, atan2, sqrt, min"
     );
     assert_eq!(place(&error), (16, 7));
 }

@@ -56,7 +56,7 @@ fn row_marks(id: &str, sigmas: &[f64], seen: &Convergence, style: usize) -> Vec<
         shape: Shape::Disk,
         style,
     });
-    let left_out = points(&|mark| matches!(mark, Rung::PreAsymptotic | Rung::NearFloor));
+    let left_out = points(&|mark| matches!(mark, Rung::PreAsymptotic | Rung::NearFloor | Rung::Unstable));
     if !left_out.is_empty() {
         let name = format!("{id}, left out");
         marks.push(Mark::Points { name, points: left_out, shape: Shape::Circle, style });

@@ -1,4 +1,5 @@
-use crate::math::{DoubleDouble, Rational};
+use super::double_double::DoubleDouble;
+use super::rational::Rational;
 use num_traits::{One, ToPrimitive, Zero};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
@@ -9,7 +10,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 /// four methods and a number to take part in an order study.
 ///
 /// ```
-/// use kinstep::integrate::Scalar;
+/// use kinstep::math::Scalar;
 /// assert_eq!(<f32 as Scalar>::from_index(3), 3.0);
 /// ```
 pub trait Scalar:
@@ -112,9 +113,37 @@ pub trait Elementary: Scalar {
     #[must_use]
     fn exp(self) -> Self;
 
-    /// The natural logarithm.
+    /// The natural logarithm; NaN for negative numbers.
     #[must_use]
     fn ln(self) -> Self;
+
+    /// The angle in \[-pi/2, pi/2\] \[rad\] with this sine; NaN beyond one.
+    #[must_use]
+    fn asin(self) -> Self;
+
+    /// The angle in \[0, pi\] \[rad\] with this cosine; NaN beyond one.
+    #[must_use]
+    fn acos(self) -> Self;
+
+    /// The angle in (-pi, pi\] \[rad\] of the point (`x`, self).
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
+
+    /// The hyperbolic sine.
+    #[must_use]
+    fn sinh(self) -> Self;
+
+    /// The hyperbolic cosine.
+    #[must_use]
+    fn cosh(self) -> Self;
+
+    /// The hyperbolic tangent.
+    #[must_use]
+    fn tanh(self) -> Self;
+
+    /// The number to a real power; NaN for negative numbers, unless the power is whole.
+    #[must_use]
+    fn power(self, exponent: Self) -> Self;
 
     /// The ratio of a circle's circumference to its diameter.
     fn pi() -> Self;
@@ -126,17 +155,52 @@ pub trait Elementary: Scalar {
     fn to_extended(self) -> DoubleDouble;
 }
 
+/// Every function is the number type's own.
+macro_rules! own_functions {
+    () => {
+        fn sin_cos(self) -> (Self, Self) {
+            self.sin_cos()
+        }
+
+        fn exp(self) -> Self {
+            self.exp()
+        }
+
+        fn ln(self) -> Self {
+            self.ln()
+        }
+
+        fn asin(self) -> Self {
+            self.asin()
+        }
+
+        fn acos(self) -> Self {
+            self.acos()
+        }
+
+        fn atan2(self, x: Self) -> Self {
+            self.atan2(x)
+        }
+
+        fn sinh(self) -> Self {
+            self.sinh()
+        }
+
+        fn cosh(self) -> Self {
+            self.cosh()
+        }
+
+        fn tanh(self) -> Self {
+            self.tanh()
+        }
+    };
+}
+
 impl Elementary for f64 {
-    fn sin_cos(self) -> (Self, Self) {
-        self.sin_cos()
-    }
+    own_functions!();
 
-    fn exp(self) -> Self {
-        self.exp()
-    }
-
-    fn ln(self) -> Self {
-        self.ln()
+    fn power(self, exponent: Self) -> Self {
+        self.powf(exponent)
     }
 
     fn pi() -> Self {
@@ -153,16 +217,10 @@ impl Elementary for f64 {
 }
 
 impl Elementary for DoubleDouble {
-    fn sin_cos(self) -> (Self, Self) {
-        self.sin_cos()
-    }
+    own_functions!();
 
-    fn exp(self) -> Self {
-        self.exp()
-    }
-
-    fn ln(self) -> Self {
-        self.ln()
+    fn power(self, exponent: Self) -> Self {
+        self.power(exponent)
     }
 
     fn pi() -> Self {
