@@ -7,7 +7,7 @@ use nalgebra::Vector6;
 use serde::Serialize;
 
 use super::arguments::CheckArguments;
-use super::export;
+use super::export::{self, Loaded};
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
 use super::share_out::{Shares, share_out};
@@ -29,6 +29,9 @@ struct Checked {
     /// The tasks over several tips, which are not checked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unchecked: Vec<String>,
+    /// What was recognised and assumed of the file.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<String>,
     /// What failed, as sentences.
     failures: Vec<String>,
 }
@@ -104,6 +107,8 @@ impl From<&JointFigures> for JointChecked {
 /// What a trajectory is held against.
 struct Against {
     trajectory: Trajectory,
+    /// What was recognised and assumed of the file.
+    notes: Vec<String>,
     /// Limits in the order of each arm's joints.
     limits: Vec<Vec<Limits>>,
     /// The arm whose path each arm should follow.
@@ -120,13 +125,18 @@ pub(super) fn run(arguments: &CheckArguments, output: &mut Output) -> Result<Exi
         return Err(Failure::usage(format!("--max-error: expected a length above 0, got {got}")));
     }
     let checked = Against::of(arguments)?.checked(arguments.max_error);
+    for note in &checked.notes {
+        output.aside(&format!("note: {note}"));
+    }
     output.show(&checked)?;
     Ok(if checked.ok { Exit::Done } else { Exit::CheckFailed })
 }
 
 impl Against {
     fn of(arguments: &CheckArguments) -> Result<Self, Failure> {
-        let (mut trajectory, _) = export::load(&arguments.trajectory, &arguments.robot)?;
+        let scenario = arguments.scenario.as_deref();
+        let Loaded { mut trajectory, notes, .. } =
+            export::load(&arguments.trajectory, &arguments.robot, scenario, &arguments.reading)?;
         let own = arguments.trajectory.join("scenario.toml");
         let folder = arguments.trajectory.is_dir().then_some(own.as_path());
         let (arms, unchecked) = match arguments.scenario.as_deref().or(folder) {
@@ -150,7 +160,7 @@ impl Against {
                 }
             });
         }
-        Ok(Self { trajectory, limits, paths, absent, unchecked })
+        Ok(Self { trajectory, notes, limits, paths, absent, unchecked })
     }
 
     fn checked(&self, max_error: f64) -> Checked {
@@ -184,6 +194,7 @@ impl Against {
             arms,
             absent: self.absent.clone(),
             unchecked: self.unchecked.clone(),
+            notes: self.notes.clone(),
             failures,
         }
     }
