@@ -4,23 +4,31 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::arguments::{ExportArguments, TrajectoryRobot};
+use super::arguments::{ExportArguments, ReadingArguments, TrajectoryRobot};
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use super::formats::{self, Exports};
 use super::output::{Output, Show};
-use kinstep::robot::{Robot, UrdfOptions};
+use kinstep::robot::{Chain, Robot, UrdfOptions};
 use kinstep::task::TaskKind;
 use kinstep_files::scenario::{RobotSource, ScenarioText, suggestion};
-use kinstep_files::trajectory::{ArmTrajectory, Machine, Recording, Stage, StagedArm, Trajectory};
+use kinstep_files::trajectory::{
+    ArmTrajectory, KnownJoint, Machine, ReadOptions, Reading, Recording, Stage, StagedArm, Trajectory, units,
+};
 use nalgebra::IsometryMatrix3;
 
 #[derive(Serialize)]
-struct Written {
+struct Exported {
     written: Vec<String>,
+    /// What was recognised and assumed of the file.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<String>,
+    /// What is questionable about it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    warnings: Vec<String>,
 }
 
-impl Show for Written {
+impl Show for Exported {
     fn text(&self) -> String {
         format!("wrote {}\n", self.written.join(", "))
     }
@@ -28,7 +36,15 @@ impl Show for Written {
 
 pub(super) fn run(arguments: &ExportArguments, output: &mut Output) -> Result<Exit, Failure> {
     let chosen = formats::formats(&arguments.format, &[])?;
-    let (mut trajectory, stage) = load(&arguments.trajectory, &arguments.robot)?;
+    let Loaded { mut trajectory, stage, notes, joints } =
+        load(&arguments.trajectory, &arguments.robot, None, &arguments.reading)?;
+    let warnings = units::questions(&trajectory, &joints);
+    for note in &notes {
+        output.aside(&format!("note: {note}"));
+    }
+    for warning in &warnings {
+        output.remark(&format!("warning: {warning}"));
+    }
     in_order_of(&mut trajectory, &stage);
     let recording = Recording { trajectory: &trajectory, stage: &stage };
     let exports = Exports::new(&chosen, &recording.machines(), arguments.append_stop)?;
@@ -37,7 +53,7 @@ pub(super) fn run(arguments: &ExportArguments, output: &mut Output) -> Result<Ex
     let folder = Folder::open(&out, arguments.force, &names)?.interruptible(formats::interruption());
     exports.write(&folder, recording)?;
     let written = names.iter().map(|name| out.join(name).display().to_string()).collect();
-    output.show(&Written { written })?;
+    output.show(&Exported { written, notes, warnings })?;
     Ok(Exit::Done)
 }
 
@@ -50,17 +66,78 @@ fn beside(path: &Path) -> PathBuf {
     parent.unwrap_or(Path::new(".")).to_owned()
 }
 
-/// Returns a trajectory with the robots that it is of: of the folder of results, or those that the arguments name.
-pub(super) fn load(path: &Path, robot: &TrajectoryRobot) -> Result<(Trajectory, Stage), Failure> {
+/// A trajectory that was read.
+pub(super) struct Loaded {
+    pub(super) trajectory: Trajectory,
+    /// The robots that it is of, where they are known: those of the folder of results, or the one that the arguments name with the
+    /// ends of its arm.
+    pub(super) stage: Stage,
+    /// What was recognised and assumed.
+    pub(super) notes: Vec<String>,
+    /// The joints that may move in it; none where that is not known.
+    pub(super) joints: Vec<KnownJoint>,
+}
+
+/// Reads a trajectory, or the one in a folder of results.
+pub(super) fn load(
+    path: &Path,
+    robot: &TrajectoryRobot,
+    scenario: Option<&Path>,
+    reading: &ReadingArguments,
+) -> Result<Loaded, Failure> {
     if path.is_dir() {
-        let trajectory = formats::read(&path.join("trajectory.csv"))?;
-        let text = ScenarioText::read(&path.join("scenario.toml"))?;
-        let stage = text.scenario()?.stage(text.folder()).map_err(|e| text.placed(e))?;
-        return Ok((trajectory, stage));
+        let read = formats::read(&path.join("trajectory.csv"), &ReadOptions::default())?;
+        let stage = stage_of(&path.join("scenario.toml"))?;
+        let joints = staged_joints(&stage);
+        return Ok(Loaded { trajectory: read.trajectory, stage, notes: read.notes, joints });
     }
-    let trajectory = formats::read(path)?;
+    let joints = known_joints(robot, scenario)?;
+    let options = reading.options(joints);
+    let Reading { trajectory, notes } = formats::read(path, &options)?;
+    if let Some(hint) = options.hint(&trajectory) {
+        return Err(Failure::new(Exit::Robot, hint).in_file(&path.display().to_string()));
+    }
     let stage = staged(&trajectory, robot)?;
-    Ok((trajectory, stage))
+    Ok(Loaded { trajectory, stage, notes, joints: options.joints })
+}
+
+fn stage_of(scenario: &Path) -> Result<Stage, Failure> {
+    let text = ScenarioText::read(scenario)?;
+    Ok(text.scenario()?.stage(text.folder()).map_err(|e| text.placed(e))?)
+}
+
+/// The joints of the robot that is named, or else of those of the scenario, those of the arms first and in their order.
+fn known_joints(robot: &TrajectoryRobot, scenario: Option<&Path>) -> Result<Vec<KnownJoint>, Failure> {
+    let Some(reference) = &robot.robot else {
+        return scenario.map_or_else(|| Ok(Vec::new()), |file| Ok(staged_joints(&stage_of(file)?)));
+    };
+    let read = self::robot(reference)?;
+    let mut joints = KnownJoint::of(&read);
+    if let (Some(base), Some(tip)) = (&robot.base, &robot.tip)
+        && let Ok(chain) = read.chain(base, tip)
+    {
+        chain_first(&mut joints, &chain);
+    }
+    Ok(joints)
+}
+
+fn staged_joints(stage: &Stage) -> Vec<KnownJoint> {
+    let mut joints: Vec<KnownJoint> = Vec::new();
+    for joint in stage.machines.iter().flat_map(|machine| KnownJoint::of(&machine.robot)) {
+        if joints.iter().all(|known| known.name != joint.name) {
+            joints.push(joint);
+        }
+    }
+    stage.arms.iter().rev().for_each(|arm| chain_first(&mut joints, &arm.chain));
+    joints
+}
+
+/// Puts the joints of a chain first, in its order.
+fn chain_first(joints: &mut [KnownJoint], chain: &Chain) {
+    let place = |joint: &KnownJoint| {
+        chain.joints().iter().position(|own| own.name == joint.name).unwrap_or(usize::MAX)
+    };
+    joints.sort_by_key(place);
 }
 
 /// Returns the stage of a lone arm; without a robot there is none.

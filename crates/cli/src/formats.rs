@@ -9,7 +9,8 @@ use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use kinstep_files::scenario::{Place, suggestion};
 use kinstep_files::trajectory::{
-    Export, ExportFile, Recording, Stage, Trajectory, TrajectoryError, TrajectoryErrorKind,
+    Export, ExportFile, ReadOptions, Reading, Recording, Stage, Trajectory, TrajectoryError,
+    TrajectoryErrorKind,
 };
 
 /// The word for all formats.
@@ -118,8 +119,8 @@ fn refusal(format: Export, file: &ExportFile, recording: Recording<'_>, append_s
 }
 
 /// Reads a trajectory, with the place of what is wrong in it.
-pub(super) fn read(path: &std::path::Path) -> Result<Trajectory, Failure> {
-    Trajectory::read(path).map_err(|e| unreadable(&e))
+pub(super) fn read(path: &std::path::Path, options: &ReadOptions) -> Result<Reading, Failure> {
+    Trajectory::read_with(path, options).map_err(|e| unreadable(&e))
 }
 
 fn unreadable(error: &TrajectoryError) -> Failure {

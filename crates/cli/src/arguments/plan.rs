@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::OutArguments;
 use kinstep_files::scenario::suggestion;
-use kinstep_files::trajectory::Interpolation;
+use kinstep_files::trajectory::{ColumnMap, Interpolation, KnownJoint, ReadOptions, TimeUnit};
 
 #[derive(Debug, Args)]
 pub(crate) struct PlanArguments {
@@ -130,12 +130,15 @@ fn size(text: &str) -> Result<(f64, f64), String> {
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportArguments {
-    /// The folder that `plan --out` wrote, or a trajectory: CSV, npz, MCAP, or a message as YAML
+    /// The folder that `plan --out` wrote, or a trajectory: a table, npz, MCAP, or messages as YAML or JSON
     #[arg(value_name = "DIR|TRAJECTORY")]
     pub(crate) trajectory: PathBuf,
 
     #[command(flatten)]
     pub(crate) robot: TrajectoryRobot,
+
+    #[command(flatten)]
+    pub(crate) reading: ReadingArguments,
 
     /// The formats: csv, npz, parquet, ros2, mcap, moveit, or all
     #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', required = true)]
@@ -169,14 +172,58 @@ pub(crate) struct TrajectoryRobot {
     pub(crate) tip: Option<String>,
 }
 
+/// How a file of others is read.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Files of others")]
+pub(crate) struct ReadingArguments {
+    /// Take these columns of a table and leave out all others: COLUMN=JOINT, COLUMN=JOINT.velocity, COLUMN=t, or a pattern with
+    /// one * that stands for the joints' names or counts them in the robot's order, as in 'actual_q_*' or
+    /// 'actual_qd_*=velocity'. May be given again
+    #[arg(long, value_name = "COLUMNS[=TARGET]")]
+    pub(crate) map: Vec<ColumnMap>,
+
+    /// What the names of joints begin with in the file and not in the robot
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) prefix: Option<String>,
+
+    /// The unit of the times: s, ms, us or ns; seconds, unless they are dates that can not be
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) time_unit: Option<TimeUnit>,
+
+    /// Angles are in degrees; convert them, and their rates
+    #[arg(long)]
+    pub(crate) degrees: bool,
+
+    /// Undo turns of 2 pi of continuous joints whose angles were wrapped
+    #[arg(long)]
+    pub(crate) unwrap: bool,
+}
+
+impl ReadingArguments {
+    /// What they say, of a file in which these joints may move.
+    pub(crate) fn options(&self, joints: Vec<KnownJoint>) -> ReadOptions {
+        ReadOptions {
+            map: self.map.clone(),
+            prefix: self.prefix.clone(),
+            time_unit: self.time_unit,
+            degrees: self.degrees,
+            unwrap: self.unwrap,
+            joints,
+        }
+    }
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
-    /// A trajectory: CSV, npz, MCAP, or a message as YAML; or the folder that `plan --out` wrote
+    /// A trajectory: a table, npz, MCAP, or messages as YAML or JSON; or the folder that `plan --out` wrote
     #[arg(value_name = "TRAJECTORY|DIR")]
     pub(crate) trajectory: PathBuf,
 
     #[command(flatten)]
     pub(crate) robot: TrajectoryRobot,
+
+    #[command(flatten)]
+    pub(crate) reading: ReadingArguments,
 
     /// A scenario whose paths the tips should follow, arm by arm of the same name; its robots are taken unless --robot is given
     #[arg(long, value_name = "FILE")]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::super::arguments::CheckArguments;
-use super::super::export;
+use super::super::export::{self, Loaded};
 use super::super::failure::Failure;
 use super::super::output::Output;
 use super::super::robot::limited_by;
@@ -14,7 +14,7 @@ use kinstep::planner::Arm;
 use kinstep::robot::{Joint, Limits, Robot};
 use kinstep_files::scenario::{ScenarioText, TaskSpec};
 use kinstep_files::trajectory::{
-    ArmTrajectory, Course, Interpolation, Met, Stage, Straying, TimeFigures, Trajectory,
+    ArmTrajectory, Course, Interpolation, Met, Stage, Straying, TimeFigures, Trajectory, units,
 };
 
 pub(super) struct Against {
@@ -28,6 +28,10 @@ pub(super) struct Against {
     absent: Vec<String>,
     /// The tasks over several tips, which are not checked.
     unchecked: Vec<String>,
+    /// What was recognised and assumed of the file.
+    notes: Vec<String>,
+    /// What is questionable about it.
+    warnings: Vec<String>,
 }
 
 /// One arm that moves.
@@ -96,10 +100,16 @@ fn followers(arm: &Arm, robot: &Robot) -> Vec<String> {
 
 impl Against {
     pub(super) fn of(arguments: &CheckArguments, output: &Output) -> Result<Self, Failure> {
-        let (mut trajectory, _) = export::load(&arguments.trajectory, &arguments.robot)?;
         let own = arguments.trajectory.join("scenario.toml");
         let folder = arguments.trajectory.is_dir().then_some(own.as_path());
         let scenario = arguments.scenario.as_deref().or(folder);
+        let Loaded { mut trajectory, notes, joints, .. } = export::load(
+            &arguments.trajectory,
+            &arguments.robot,
+            arguments.scenario.as_deref(),
+            &arguments.reading,
+        )?;
+        let warnings = units::questions(&trajectory, &joints);
         let Asked { takers, stage, duration, tasks } =
             scenario.map_or_else(|| Ok(Asked::nothing()), Asked::of)?;
         let robot = arguments.robot.robot.as_deref();
@@ -129,7 +139,7 @@ impl Against {
             all.push(Moved { limits, straying, interpolation, path });
         }
         trajectory.arms = arms;
-        Ok(Self { trajectory, moved: all, duration, absent, unchecked: tasks })
+        Ok(Self { trajectory, moved: all, duration, absent, unchecked: tasks, notes, warnings })
     }
 
     pub(super) fn checked(&self, max_error: f64) -> Checked {
@@ -157,6 +167,8 @@ impl Against {
             arms,
             absent: self.absent.clone(),
             unchecked: self.unchecked.clone(),
+            notes: self.notes.clone(),
+            warnings: self.warnings.clone(),
             failures,
         }
     }

@@ -15,6 +15,12 @@ pub(super) fn run(arguments: &CheckArguments, output: &mut Output) -> Result<Exi
         return Err(Failure::usage(format!("--max-error: expected a length above 0, got {got}")));
     }
     let checked = Against::of(arguments, output)?.checked(arguments.max_error);
+    for note in &checked.notes {
+        output.aside(&format!("note: {note}"));
+    }
+    for warning in &checked.warnings {
+        output.remark(&format!("warning: {warning}"));
+    }
     output.show(&checked)?;
     Ok(if checked.ok { Exit::Done } else { Exit::CheckFailed })
 }

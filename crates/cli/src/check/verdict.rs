@@ -26,6 +26,12 @@ pub(super) struct Checked {
     /// The tasks over several tips, which are not checked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) unchecked: Vec<String>,
+    /// What was recognised and assumed of the file.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) notes: Vec<String>,
+    /// What is questionable about it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) warnings: Vec<String>,
     /// What failed, as sentences.
     pub(super) failures: Vec<String>,
 }

@@ -2,19 +2,22 @@
 
 use std::io::{self, Write};
 
-use super::csv_layout::{Layout, Role};
-use super::csv_records::{Field, Records, quoted};
+use super::csv_layout::{Head, Layout};
+use super::csv_records::{Field, Records, Separator, quoted};
+use super::csv_samples::Samples;
 use super::digits::push_full;
 use super::error::Problem;
-use super::read::{Source, TrajectoryReader, not_later};
-use super::{Recording, Trajectory, TrajectoryFormat, csv_metadata};
+use super::read::{Source, TrajectoryReader};
+use super::{ReadOptions, Reading, Recording, TrajectoryFormat, csv_metadata};
 
 /// A row per sample: `t`, then of each arm `ARM.JOINT` [rad or m] joint by joint, `ARM.JOINT.velocity` [rad/s or m/s],
 /// `ARM.JOINT.acceleration` [rad/s^2 or m/s^2], and `ARM.error`, the norm of its task error; what is not known has no
 /// columns. 17 significant digits, so that every value reads back as it was. What made it stands beside it: [`CsvMetadata`](super::CsvMetadata).
 ///
 /// Read are such files and those of others: columns in any order, byte order marks, lines that end in CR LF, quoted
-/// fields, a header behind `#`, and plain names of joints where there is one arm, which is then called `arm`.
+/// fields, a header behind `#`, and plain names of joints where there is one arm, which is then called `arm`; fields between
+/// semicolons, tabs or blanks where there are no commas, and decimal commas in them; columns called after entries of joint
+/// states, and those that [`ReadOptions::map`] names.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Csv;
 
@@ -44,135 +47,86 @@ impl TrajectoryReader for Csv {
         true
     }
 
-    fn read(&self, source: Source<'_>) -> Result<Trajectory, Problem> {
+    fn read(&self, source: Source<'_>, options: &ReadOptions) -> Result<Reading, Problem> {
         let text = source.text()?;
-        let (mut records, mut fields) = (Records::new(text), Vec::new());
+        let mut notes = Vec::new();
+        let separator = separator(text)?;
+        if separator != Separator::Comma {
+            notes.push(format!("fields are separated by {}", separator.name()));
+        }
+        let (mut records, mut fields) = (Records::separated_by(text, separator), Vec::new());
         if !records.read(&mut fields)? {
             return Err(Problem::at(
                 0,
                 "the file is empty; its first line names the columns, as in t,arm.joint1",
             ));
         }
-        let layout = layout(text, &fields)?;
-        let mut samples = Samples::new(layout);
+        let first = first_record(&records)?;
+        let layout = layout(&fields, &first, options, &mut notes)?;
+        let mut samples = Samples::new(layout, options, separator != Separator::Comma);
+        samples.reserve(text.bytes().filter(|&byte| byte == b'\n').count());
         while records.read(&mut fields)? {
             samples.push(&fields, records.end())?;
         }
-        let mut trajectory = samples.finish(text)?;
+        let mut trajectory = samples.finish(text.trim_end().len(), &mut notes)?;
         trajectory.about = csv_metadata::beside(source.path)?;
-        Ok(trajectory)
+        Ok(Reading { trajectory, notes })
     }
 }
 
+/// The first sample, as it is written.
+fn first_record<'t>(records: &Records<'t>) -> Result<Vec<Field<'t>>, Problem> {
+    let (mut ahead, mut first) = (records.clone(), Vec::new());
+    ahead.read(&mut first)?;
+    Ok(first)
+}
+
 /// The header, without the `#` that some programs put in front.
-fn layout(text: &str, header: &[Field<'_>]) -> Result<Layout, Problem> {
-    let names: Vec<&str> = header.iter().map(|field| field.text.trim_start_matches('#').trim()).collect();
-    check_separator(text, header)?;
+fn layout(
+    header: &[Field<'_>],
+    first: &[Field<'_>],
+    options: &ReadOptions,
+    notes: &mut Vec<String>,
+) -> Result<Layout, Problem> {
+    let plain = |field: &'_ Field<'_>| field.text.trim_start_matches('#').trim().to_owned();
+    let names: Vec<String> =
+        header.iter().map(plain).filter(|name| !name.is_empty() || header.len() > 1).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
     if names.iter().all(|name| name.parse::<f64>().is_ok()) {
         let message = "the first line has to name the columns, as in t,arm.joint1; here are numbers";
         return Err(Problem::at(header[0].at, message));
     }
-    Layout::of(&names, |column| header.get(column).map(|field| field.at))
+    let first: Vec<&str> = first.iter().map(|field| field.text.trim()).collect();
+    let head = Head { names: &names, first: &first };
+    Layout::of(head, |column| header.get(column).map(|field| field.at), options, notes)
 }
 
-/// One column with another separator in it is a file of another dialect.
-fn check_separator(text: &str, header: &[Field<'_>]) -> Result<(), Problem> {
-    let [only] = header else { return Ok(()) };
-    let Some(byte) = text[only.at..].find([';', '\t', '\n']).map(|offset| only.at + offset) else {
-        return Ok(());
-    };
-    let separator = match text.as_bytes()[byte] {
-        b';' => "semicolons",
-        b'\t' => "tabs",
-        _ => return Ok(()),
-    };
-    let message =
-        format!("fields are separated by {separator}; write commas between them, and points in numbers");
-    Err(Problem::at(byte, message))
-}
-
-/// The samples while they are read.
-struct Samples {
-    layout: Layout,
-    times: Vec<f64>,
-    names: Vec<String>,
-}
-
-impl Samples {
-    fn new(layout: Layout) -> Self {
-        let name = |role: &Role| {
-            let joint = |arm: usize, joint: usize| layout.arms[arm].joints[joint].clone();
-            match *role {
-                Role::Time => "time".to_owned(),
-                Role::Joint { quantity, arm, joint: place } => {
-                    format!("{} of `{}`", quantity.name(), joint(arm, place))
-                }
-                Role::Error { arm } => format!("error of `{}`", layout.arms[arm].name),
-            }
-        };
-        Self { names: layout.roles.iter().map(name).collect(), layout, times: Vec::new() }
-    }
-
-    fn push(&mut self, fields: &[Field<'_>], end: usize) -> Result<(), Problem> {
-        let expected = self.layout.roles.len();
-        if fields.len() != expected {
-            let at = fields.get(expected).map_or(end, |field| field.at);
-            let got = fields.len();
-            return Err(Problem::at(
-                at,
-                format!("expected {expected} fields as in the first line, got {got}"),
-            ));
-        }
-        let Layout { roles, arms } = &mut self.layout;
-        let row = self.times.len();
-        for ((field, role), name) in fields.iter().zip(roles).zip(&self.names) {
-            let value = number(field, name)?;
-            match *role {
-                Role::Time => push_time(&mut self.times, value, field.at)?,
-                Role::Joint { quantity, arm, joint } => {
-                    let joints = arms[arm].joints.len();
-                    let values = arms[arm].of_mut(quantity);
-                    values.resize((row + 1) * joints, 0.0);
-                    values[row * joints + joint] = value;
-                }
-                Role::Error { arm } => arms[arm].errors.push(value),
-            }
-        }
-        Ok(())
-    }
-
-    fn finish(self, text: &str) -> Result<Trajectory, Problem> {
-        if self.times.len() < 2 {
-            let (at, count) = (text.trim_end().len(), self.times.len());
-            let message =
-                format!("a trajectory needs two samples at least, and here the file ends after {count}");
-            return Err(Problem::at(at, message));
-        }
-        Ok(Trajectory { about: None, times: self.times, arms: self.layout.arms })
-    }
-}
-
-fn push_time(times: &mut Vec<f64>, time: f64, at: usize) -> Result<(), Problem> {
-    match times.last() {
-        Some(&before) if time <= before => Err(Problem::at(at, not_later(before, time))),
-        _ => {
-            times.push(time);
-            Ok(())
-        }
-    }
-}
-
-fn number(field: &Field<'_>, name: &str) -> Result<f64, Problem> {
-    let text = field.text.trim();
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(value) => {
-            Err(Problem::at(field.at, format!("the {name} is {value}, which is not a finite number")))
-        }
-        Err(_) if text.is_empty() => Err(Problem::at(field.at, format!("a gap: the {name} is missing"))),
-        Err(_) => {
-            let shown: String = text.chars().take(40).collect();
-            Err(Problem::at(field.at, format!("the {name} is not a number: `{}`", shown.escape_debug())))
+/// What separates the fields, by the first line: it has to be the only candidate there, unless that is a blank.
+fn separator(text: &str) -> Result<Separator, Problem> {
+    let start = text.len() - text.trim_start().len();
+    let line = text[start..].lines().next().unwrap_or_default();
+    let mut is_quoted = false;
+    let plain: String = line
+        .chars()
+        .map(|c| {
+            is_quoted ^= c == '"';
+            if is_quoted { '_' } else { c }
+        })
+        .collect();
+    let found: Vec<Separator> = [Separator::Comma, Separator::Semicolon, Separator::Tab]
+        .into_iter()
+        .filter(|separator| plain.contains(separator.character()))
+        .collect();
+    match found[..] {
+        [only] => Ok(only),
+        [] if plain.trim_start_matches('#').split_whitespace().count() > 1 => Ok(Separator::Blanks),
+        [] => Ok(Separator::Comma),
+        [one, other, ..] => {
+            let (one, other) = (one.name(), other.name());
+            let message = format!(
+                "the first line has both {one} and {other}: which of them separate the fields is not clear"
+            );
+            Err(Problem::at(start, message))
         }
     }
 }

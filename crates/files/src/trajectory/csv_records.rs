@@ -1,4 +1,5 @@
-//! Comma-separated values as RFC 4180 has them: records of fields, with the places where they stand.
+//! Comma-separated values as RFC 4180 has them, also with other separators: records of fields, with the places where they
+//! stand.
 
 use std::borrow::Cow;
 
@@ -18,12 +19,49 @@ pub struct Field<'t> {
 pub struct Records<'t> {
     text: &'t str,
     at: usize,
+    separator: Separator,
+}
+
+/// What stands between fields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Separator {
+    Comma,
+    Semicolon,
+    Tab,
+    /// As many spaces as there are.
+    Blanks,
+}
+
+impl Separator {
+    pub(super) fn character(self) -> char {
+        match self {
+            Self::Comma => ',',
+            Self::Semicolon => ';',
+            Self::Tab => '\t',
+            Self::Blanks => ' ',
+        }
+    }
+
+    /// The word for several.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Comma => "commas",
+            Self::Semicolon => "semicolons",
+            Self::Tab => "tabs",
+            Self::Blanks => "blanks",
+        }
+    }
 }
 
 impl<'t> Records<'t> {
     /// Begins at the first record of a text.
     pub fn new(text: &'t str) -> Self {
-        Self { text, at: 0 }
+        Self::separated_by(text, Separator::Comma)
+    }
+
+    /// Begins at the first record of a text with another separator.
+    pub(super) fn separated_by(text: &'t str, separator: Separator) -> Self {
+        Self { text, at: 0, separator }
     }
 
     /// Reads the next record that has something in it into `fields`; returns false at the end of the text.
@@ -56,8 +94,10 @@ impl<'t> Records<'t> {
             return self.quoted_record(fields);
         }
         let mut at = self.at;
-        for part in line.trim_end_matches('\r').split(',') {
-            fields.push(Field { text: Cow::Borrowed(part), at });
+        for part in line.trim_end_matches('\r').split(self.separator.character()) {
+            if self.separator != Separator::Blanks || !part.is_empty() {
+                fields.push(Field { text: Cow::Borrowed(part), at });
+            }
             at += part.len() + 1;
         }
         self.at = (self.at + end + 1).min(self.text.len());
@@ -70,8 +110,12 @@ impl<'t> Records<'t> {
             let field = self.field()?;
             fields.push(field);
             let rest = &self.text[self.at..];
-            if rest.starts_with(',') {
-                self.at += 1;
+            if rest.starts_with(self.separator.character()) {
+                self.at += if self.separator == Separator::Blanks {
+                    rest.len() - rest.trim_start_matches(' ').len()
+                } else {
+                    1
+                };
             } else {
                 self.at += if rest.starts_with("\r\n") { 2 } else { rest.len().min(1) };
                 return Ok(());
@@ -82,7 +126,7 @@ impl<'t> Records<'t> {
     fn field(&mut self) -> Result<Field<'t>, Problem> {
         let (at, rest) = (self.at, &self.text[self.at..]);
         if !rest.starts_with('"') {
-            let length = rest.find([',', '\n']).unwrap_or(rest.len());
+            let length = rest.find([self.separator.character(), '\n']).unwrap_or(rest.len());
             let text = rest[..length].trim_end_matches('\r');
             self.at += text.len();
             return Ok(Field { text: Cow::Borrowed(text), at });
@@ -102,8 +146,12 @@ impl<'t> Records<'t> {
             inner += 1;
         }
         self.at += inner;
-        if !(rest.len() == inner || rest[inner..].starts_with([',', '\n', '\r'])) {
-            return Err(Problem::at(self.at, "a comma or the end of the line has to follow a closing quote"));
+        if !(rest.len() == inner || rest[inner..].starts_with([self.separator.character(), '\n', '\r'])) {
+            let separators = self.separator.name();
+            let message = format!(
+                "the end of the line or one of the {separators} between fields has to follow a closing quote"
+            );
+            return Err(Problem::at(self.at, message));
         }
         Ok(Field { text: Cow::Owned(text), at })
     }

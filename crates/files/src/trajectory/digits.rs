@@ -7,28 +7,54 @@ const SIGNIFICANT: usize = 17;
 /// same double, filled up with zeros.
 pub(super) fn push_full(text: &mut Vec<u8>, value: f64) {
     let mut buffer = zmij::Buffer::new();
-    let shortest = buffer.format(value);
+    let shortest = buffer.format(value).as_bytes();
     if !value.is_finite() {
-        text.extend(shortest.bytes());
+        text.extend(shortest);
         return;
     }
-    let plain = shortest.strip_prefix('-');
-    text.extend(plain.map(|_| b'-'));
-    let plain = plain.unwrap_or(shortest);
-    let (mantissa, exponent) = plain.split_once('e').unwrap_or((plain, "0"));
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let leading = |digits: &str| digits.bytes().take_while(|&digit| digit == b'0').count();
-    let zeros = if leading(whole) == whole.len() { whole.len() + leading(fraction) } else { 0 };
-    let mut digits = [b'0'; SIGNIFICANT];
-    let significant = whole.bytes().chain(fraction.bytes()).skip(zeros);
-    digits.iter_mut().zip(significant).for_each(|(place, digit)| *place = digit);
-    text.push(digits[0]);
-    text.push(b'.');
-    text.extend(&digits[1..]);
-    // The shortest form has two dozen characters, and its exponent is a number.
-    let [before, zeros] = [whole.len(), zeros].map(|count| i32::from(count as u8));
-    let exponent: i32 = exponent.parse().unwrap_or_default();
-    push_exponent(text, if value == 0.0 { 0 } else { exponent + before - 1 - zeros });
+    let (sign, plain) = if shortest[0] == b'-' { (1, &shortest[1..]) } else { (0, shortest) };
+    text.extend(&shortest[..sign]);
+    let Decimal { digits, exponent } = Decimal::of(plain);
+    let mut mantissa = [b'.'; SIGNIFICANT + 1];
+    mantissa[0] = digits[0];
+    mantissa[2..].copy_from_slice(&digits[1..]);
+    text.extend_from_slice(&mantissa);
+    push_exponent(text, exponent);
+}
+
+/// A positive number as its significant digits and the power of ten of the first of them.
+struct Decimal {
+    digits: [u8; SIGNIFICANT],
+    exponent: i32,
+}
+
+impl Decimal {
+    /// Takes decimals apart that have at most 17 significant digits, with or without a point and an exponent.
+    fn of(plain: &[u8]) -> Self {
+        let (mut digits, mut count) = ([b'0'; SIGNIFICANT], 0);
+        let (mut is_fraction, mut exponent, mut at) = (false, -1, 0);
+        while at < plain.len() && plain[at] != b'e' {
+            match plain[at] {
+                b'.' => is_fraction = true,
+                b'0' if count == 0 => exponent -= i32::from(is_fraction),
+                digit => {
+                    if count < SIGNIFICANT {
+                        digits[count] = digit;
+                    }
+                    count += 1;
+                    exponent += i32::from(!is_fraction);
+                }
+            }
+            at += 1;
+        }
+        if count == 0 {
+            return Self { digits, exponent: 0 };
+        }
+        let is_negative = plain.get(at + 1) == Some(&b'-');
+        let size = plain[at..].iter().filter(|byte| byte.is_ascii_digit());
+        let size = size.fold(0, |size, digit| 10 * size + i32::from(digit - b'0'));
+        Self { digits, exponent: exponent + if is_negative { -size } else { size } }
+    }
 }
 
 fn push_exponent(text: &mut Vec<u8>, exponent: i32) {

@@ -1,7 +1,8 @@
 //! Limits of joints in a file of their own, as `MoveIt` and `ros2_control` keep them: `joint_limits.yaml`.
 
 use super::error::{Problem, TextPlace};
-use super::yaml::{Node, documents};
+use super::node::Node;
+use super::yaml::documents;
 use kinstep::math::number_text;
 use kinstep::robot::names::quote;
 use kinstep::robot::{Diagnostic, Limits, LimitsError, Robot, Severity, degrees_suspected};
@@ -104,8 +105,13 @@ impl LimitsFile {
     pub fn from_yaml(text: &str) -> Result<Self, Vec<Diagnostic>> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut findings = Findings { text, found: Vec::new() };
-        let joints = match documents(text) {
-            Ok(documents) => read(&documents, &mut findings),
+        let mut read_documents = Vec::new();
+        let documents = documents(text, &mut |document| {
+            read_documents.push(document);
+            Ok(())
+        });
+        let joints = match documents {
+            Ok(()) => read(&read_documents, &mut findings),
             Err(problem) => {
                 findings.problem(problem);
                 Vec::new()

@@ -18,7 +18,8 @@ use super::quantity::Quantity;
 use super::read::{Source, TrajectoryReader};
 use super::ros2_schema::schema;
 use super::ros2_yaml::start_of;
-use super::{About, ArmTrajectory, Machine, Recording, Trajectory, TrajectoryFormat};
+use super::states::{State, StateTime, States};
+use super::{About, ArmTrajectory, Machine, ReadOptions, Reading, Recording, Trajectory, TrajectoryFormat};
 
 /// The frame in which all machines stand.
 const WORLD: &str = "world";
@@ -379,8 +380,8 @@ impl TrajectoryReader for Mcap {
         source.bytes.starts_with(MAGIC) || source.has_extension(&["mcap"])
     }
 
-    fn read(&self, source: Source<'_>) -> Result<Trajectory, Problem> {
-        let (mut commands, mut states): (Vec<Series>, Vec<Series>) = (Vec::new(), Vec::new());
+    fn read(&self, source: Source<'_>, options: &ReadOptions) -> Result<Reading, Problem> {
+        let (mut commands, mut states): (Vec<Series>, Vec<Joints>) = (Vec::new(), Vec::new());
         let contents =
             Contents::read(source.bytes, &mut |channel, time, message| match channel.message.as_str() {
                 "trajectory_msgs/msg/JointTrajectory"
@@ -393,26 +394,66 @@ impl TrajectoryReader for Mcap {
                     let known = states.iter().position(|known| known.topic == channel.topic);
                     let place = known.unwrap_or(states.len());
                     if known.is_none() {
-                        states.push(Series::of(channel));
+                        states.push(Joints {
+                            topic: channel.topic.clone(),
+                            name: name_of(channel),
+                            states: States::default(),
+                        });
                     }
-                    states[place].push_state(time, message)
+                    let topic = &channel.topic;
+                    let pushed = states[place].states.push(&state_of(time, message)?, options);
+                    pushed.map_err(|problem| Problem::new(format!("{topic}: {}", problem.message)))
                 }
                 _ => Ok(()),
             })?;
         let about = contents.metadata.get(ABOUT);
         let about =
             about.and_then(|about| About::from_entries(about.iter().map(|(k, v)| (k.as_str(), v.as_str()))));
-        let found = if commands.is_empty() { states } else { commands };
+        let mut notes = Vec::new();
+        if commands.is_empty() {
+            let finished = states.into_iter().map(|one| one.series(options, &mut notes));
+            commands = finished.collect::<Result<_, _>>()?;
+        }
         let nothing = "it has neither trajectory_msgs/msg/JointTrajectory nor sensor_msgs/msg/JointState";
-        let first = found.first().ok_or_else(|| Problem::new(nothing))?;
-        if let Some(other) = found.iter().find(|other| other.times != first.times) {
+        let first = commands.first().ok_or_else(|| Problem::new(nothing))?;
+        if let Some(other) = commands.iter().find(|other| other.times != first.times) {
             let (one, other) = (&first.topic, &other.topic);
             let message = format!("{other} and {one} have samples at different times; keep one of them");
             return Err(Problem::new(message));
         }
         let times = first.times.clone();
-        Ok(Trajectory { about, times, arms: found.into_iter().map(|series| series.arm).collect() })
+        let arms = commands.into_iter().map(|series| series.arm).collect();
+        Ok(Reading { trajectory: Trajectory { about, times, arms }, notes })
     }
+}
+
+/// The joint states of one topic.
+struct Joints {
+    topic: String,
+    name: String,
+    states: States,
+}
+
+impl Joints {
+    fn series(self, options: &ReadOptions, notes: &mut Vec<String>) -> Result<Series, Problem> {
+        let (topic, mut own) = (self.topic, Vec::new());
+        let trajectory = self.states.finish(&self.name, options, &mut own);
+        let Trajectory { times, mut arms, .. } =
+            trajectory.map_err(|problem| Problem::new(format!("{topic}: {}", problem.message)))?;
+        notes.extend(own.into_iter().map(|note| format!("{topic}: {note}")));
+        Ok(Series { arm: arms.swap_remove(0), topic, times })
+    }
+}
+
+/// A joint state, with the time at which it was recorded where it has no stamp.
+fn state_of(log_time: u64, message: &[u8]) -> Result<State, Problem> {
+    let mut cdr = CdrReader::new(message)?;
+    let stamp = cdr.header()?;
+    let names = cdr.texts()?;
+    let has_stamp = stamp != Stamp::ZERO || log_time == 0;
+    let nanoseconds = if has_stamp { stamp.nanoseconds() } else { log_time };
+    let (positions, velocities) = (cdr.list()?, cdr.list()?);
+    Ok(State { at: None, time: StateTime::Nanoseconds(nanoseconds.into()), names, positions, velocities })
 }
 
 /// The samples of one topic.
@@ -428,11 +469,15 @@ fn arm_of(topic: &str) -> &str {
     if space.is_empty() { "arm" } else { space }
 }
 
+/// The name of the arm, or machine, that a channel is about.
+fn name_of(channel: &Channel) -> String {
+    channel.metadata.get(MACHINE).map_or(arm_of(&channel.topic), String::as_str).to_owned()
+}
+
 impl Series {
     fn of(channel: &Channel) -> Self {
-        let topic = channel.topic.clone();
-        let name = channel.metadata.get(MACHINE).map_or(arm_of(&topic), String::as_str);
-        Self { arm: ArmTrajectory::empty(name), times: Vec::new(), topic }
+        let (topic, name) = (channel.topic.clone(), name_of(channel));
+        Self { arm: ArmTrajectory::empty(&name), times: Vec::new(), topic }
     }
 
     fn command(channel: &Channel, message: &[u8]) -> Result<Self, Problem> {
@@ -447,21 +492,6 @@ impl Series {
             series.push(positions, rates)?;
         }
         Ok(series)
-    }
-
-    fn push_state(&mut self, log_time: u64, message: &[u8]) -> Result<(), Problem> {
-        let mut cdr = CdrReader::new(message)?;
-        let stamp = cdr.header()?;
-        let joints = cdr.texts()?;
-        if self.times.is_empty() {
-            self.arm.joints = joints;
-        } else if self.arm.joints != joints {
-            return Err(Problem::new(format!("{} names other joints as time goes on", self.topic)));
-        }
-        let has_stamp = stamp != Stamp::ZERO || log_time == 0;
-        self.times.push(if has_stamp { stamp.seconds() } else { log_time as f64 / 1e9 });
-        let (positions, velocities) = (cdr.list()?, cdr.list()?);
-        self.push(positions, [velocities, Vec::new()])
     }
 
     /// Adds a sample, of which all have velocities or none, and accelerations likewise.

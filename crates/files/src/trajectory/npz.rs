@@ -5,10 +5,13 @@ use std::io::{self, Cursor, Read, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
+use super::csv_dialects::numbered;
+use super::csv_layout::ONLY_ARM;
 use super::error::Problem;
 use super::npy::{Array, Content, write_numbers, write_texts};
 use super::read::{Source, TrajectoryReader};
-use super::{About, ArmTrajectory, Recording, Trajectory, TrajectoryFormat};
+use super::times::Times;
+use super::{About, ArmTrajectory, ReadOptions, Reading, Recording, Trajectory, TrajectoryFormat};
 
 /// Arrays as `numpy.load` reads them: `t` \[s\]; `arms`, the arms' names; of every arm `ARM.joints`, `ARM.positions`
 /// (samples x joints, rad or m), and where they are known `ARM.velocities`, `ARM.accelerations` and `ARM.errors`; `about`, pairs of keys and
@@ -69,15 +72,19 @@ impl TrajectoryReader for Npz {
         source.bytes.starts_with(b"PK\x03\x04") || source.has_extension(&["npz"])
     }
 
-    fn read(&self, source: Source<'_>) -> Result<Trajectory, Problem> {
+    fn read(&self, source: Source<'_>, options: &ReadOptions) -> Result<Reading, Problem> {
         let archive = ZipArchive::new(Cursor::new(source.bytes))
             .map_err(|e| Problem::new(format!("it is no archive of arrays: {e}")))?;
         let mut arrays = Arrays { archive };
         let times = arrays.first(&["t", "time"])?;
         let samples = times.shape.first().copied().unwrap_or_default();
+        let mut clock = Times::new(options.time_unit);
         let times = times.numbers("t", &[samples])?;
+        times.into_iter().try_for_each(|time| clock.push_real(time)).map_err(Problem::new)?;
+        let mut notes = Vec::new();
+        let times = clock.finish(&mut notes);
         let arms = match arrays.get("arms")? {
-            None => vec![arrays.plain_arm(samples)?],
+            None => vec![arrays.plain_arm(samples, options, &mut notes)?],
             Some(names) => {
                 let names = names.texts("arms")?;
                 names.iter().map(|name| arrays.arm(name, samples)).collect::<Result<_, _>>()?
@@ -88,7 +95,7 @@ impl TrajectoryReader for Npz {
             let pairs = flat.chunks_exact(2).map(|pair| (pair[0].as_str(), pair[1].as_str()));
             About::from_entries(pairs)
         });
-        Ok(Trajectory { about, times, arms })
+        Ok(Reading { trajectory: Trajectory { about, times, arms }, notes })
     }
 }
 
@@ -126,28 +133,44 @@ impl Arrays<'_> {
 
     fn arm(&mut self, name: &str, samples: usize) -> Result<ArmTrajectory, Problem> {
         let own = |part: &str| format!("{name}.{part}");
-        let names = ["joints", "positions", "velocities", "accelerations", "errors"].map(own);
+        let joints = self.first(&[&own("joints")])?.texts("joints")?;
+        let names = ["positions", "velocities", "accelerations", "errors"].map(own);
         let names = names.each_ref().map(|name| [name.as_str()]);
-        self.arm_of(name, samples, names.each_ref().map(<[&str; 1]>::as_slice))
+        self.arm_of((name, joints), samples, names.each_ref().map(<[&str; 1]>::as_slice))
     }
 
-    fn plain_arm(&mut self, samples: usize) -> Result<ArmTrajectory, Problem> {
-        self.arm_of(
-            "arm",
-            samples,
-            [
-                &["joints", "joint_names"],
-                &["positions", "q"],
-                &["velocities", "qd"],
-                &["accelerations", "qdd"],
-                &["errors"],
-            ],
-        )
+    /// The only arm of a file of others; joints without names are the robot's, in its order.
+    fn plain_arm(
+        &mut self,
+        samples: usize,
+        options: &ReadOptions,
+        notes: &mut Vec<String>,
+    ) -> Result<ArmTrajectory, Problem> {
+        let positions: &[&str] = &["positions", "q"];
+        let mut joints = None;
+        for key in ["joints", "joint_names"] {
+            joints = joints.or(self.get(key)?);
+        }
+        let joints = match joints {
+            Some(joints) => joints.texts("joints")?,
+            None if options.joints.is_empty() => self.first(&["joints", "joint_names"])?.texts("joints")?,
+            None => {
+                let width = self.first(positions)?.shape.get(1).copied().unwrap_or_default();
+                let numbers: Vec<usize> = (0..width).collect();
+                numbered(&numbers, positions[0], options, notes).map_err(Problem::new)?
+            }
+        };
+        let rest: [&[&str]; 3] = [&["velocities", "qd"], &["accelerations", "qdd"], &["errors"]];
+        self.arm_of((ONLY_ARM, joints), samples, [positions, rest[0], rest[1], rest[2]])
     }
 
-    fn arm_of(&mut self, name: &str, samples: usize, keys: [&[&str]; 5]) -> Result<ArmTrajectory, Problem> {
-        let [joints, positions, velocities, accelerations, errors] = keys;
-        let joints = self.first(joints)?.texts(joints[0])?;
+    fn arm_of(
+        &mut self,
+        (name, joints): (&str, Vec<String>),
+        samples: usize,
+        keys: [&[&str]; 4],
+    ) -> Result<ArmTrajectory, Problem> {
+        let [positions, velocities, accelerations, errors] = keys;
         let shape = [samples, joints.len()];
         let positions = self.first(positions)?.numbers(positions[0], &shape)?;
         let mut known = |keys: &[&str], shape: &[usize]| -> Result<Vec<f64>, Problem> {

@@ -15,10 +15,11 @@ use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{ColumnDescriptor, Type, TypePtr};
 
-use super::csv_layout::{Layout, Role};
+use super::csv_layout::{Head, Layout, Role};
 use super::error::Problem;
 use super::read::{Source, TrajectoryReader};
-use super::{About, Recording, Trajectory, TrajectoryFormat};
+use super::times::Times;
+use super::{About, ReadOptions, Reading, Recording, Trajectory, TrajectoryFormat};
 
 /// What every file begins and ends with.
 pub(super) const MAGIC: &[u8] = b"PAR1";
@@ -120,31 +121,41 @@ impl TrajectoryReader for Parquet {
         source.bytes.starts_with(MAGIC) || source.has_extension(&["parquet"])
     }
 
-    fn read(&self, source: Source<'_>) -> Result<Trajectory, Problem> {
+    fn read(&self, source: Source<'_>, options: &ReadOptions) -> Result<Reading, Problem> {
         // The crate trusts some of what damaged files say, and panics where it lies; what is known of it is checked before.
-        let read = std::panic::catch_unwind(|| Self::trajectory(source));
+        let read = std::panic::catch_unwind(|| Self::reading(source, options));
         read.unwrap_or_else(|_| Err(Problem::new("it can not be read as Parquet: the file is damaged")))
     }
 }
 
 impl Parquet {
-    fn trajectory(source: Source<'_>) -> Result<Trajectory, Problem> {
+    fn reading(source: Source<'_>, options: &ReadOptions) -> Result<Reading, Problem> {
         let file = SerializedFileReader::new(Bytes::copy_from_slice(source.bytes)).map_err(unreadable)?;
         let metadata = file.metadata();
         let schema = metadata.file_metadata().schema_descr();
         let names: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
-        schema.columns().iter().try_for_each(|column| check_column(column))?;
-        let layout = Layout::of(&names, |_| None)?;
+        let mut notes = Vec::new();
+        let head = Head { names: &names, first: &[] };
+        let layout = Layout::of(head, |_| None, options, &mut notes)?;
+        let own = schema.columns().iter().zip(&layout.roles).filter(|(_, role)| **role != Role::Other);
+        own.into_iter().try_for_each(|(column, role)| check_column(column, *role))?;
         check_groups(metadata, names.len())?;
         check_places(metadata, source.bytes.len())?;
-        let mut columns = vec![Vec::new(); names.len()];
+        let mut columns = vec![Values::default(); names.len()];
         for index in 0..metadata.num_row_groups() {
             let group = file.get_row_group(index).map_err(unreadable)?;
-            for ((place, column), name) in columns.iter_mut().enumerate().zip(&names) {
+            let own = columns.iter_mut().enumerate().filter(|(place, _)| layout.roles[*place] != Role::Other);
+            for (place, column) in own {
+                let name = names[place];
                 read_column(&*group, place, name, column)?;
             }
         }
-        Ok(assembled(layout, columns, about(metadata)))
+        let mut times = Times::new(options.time_unit.or(layout.unit));
+        let place = layout.roles.iter().position(|role| *role == Role::Time).unwrap_or_default();
+        let clock = std::mem::take(&mut columns[place]);
+        clock.times(&mut times).map_err(Problem::new)?;
+        let times = times.finish(&mut notes);
+        Ok(Reading { trajectory: assembled(layout, times, columns, about(metadata)), notes })
     }
 }
 
@@ -153,13 +164,14 @@ fn unreadable(error: ParquetError) -> Problem {
     Problem::new(format!("it can not be read as Parquet: {error}"))
 }
 
-fn check_column(column: &ColumnDescriptor) -> Result<(), Problem> {
+fn check_column(column: &ColumnDescriptor, role: Role) -> Result<(), Problem> {
     let name = column.path().string();
     if column.path().parts().len() != 1 || column.max_rep_level() > 0 {
         return Err(Problem::new(format!("the column `{name}` is nested; a column has one number per row")));
     }
     match column.physical_type() {
         Physical::DOUBLE | Physical::FLOAT => Ok(()),
+        Physical::INT64 | Physical::INT32 if role == Role::Time => Ok(()),
         other => {
             let message =
                 format!("the column `{name}` is of the type {other}; convert it to doubles, or drop it");
@@ -219,13 +231,15 @@ fn read_column(
     group: &dyn RowGroupReader,
     place: usize,
     name: &str,
-    values: &mut Vec<f64>,
+    values: &mut Values,
 ) -> Result<(), Problem> {
     let rows = group.metadata().num_rows() as usize;
     let nullable = group.metadata().schema_descr().column(place).max_def_level() > 0;
     let read = match group.get_column_reader(place).map_err(unreadable)? {
-        ColumnReader::DoubleColumnReader(reader) => numbers(reader, rows, nullable, values),
-        ColumnReader::FloatColumnReader(reader) => numbers(reader, rows, nullable, values),
+        ColumnReader::DoubleColumnReader(reader) => numbers(reader, rows, nullable, &mut values.reals),
+        ColumnReader::FloatColumnReader(reader) => numbers(reader, rows, nullable, &mut values.reals),
+        ColumnReader::Int64ColumnReader(reader) => numbers(reader, rows, nullable, &mut values.whole),
+        ColumnReader::Int32ColumnReader(reader) => numbers(reader, rows, nullable, &mut values.whole),
         _ => return Err(Problem::new(format!("the column `{name}` has no numbers"))),
     };
     match read.map_err(unreadable)? {
@@ -239,11 +253,11 @@ fn read_column(
 }
 
 /// Adds so many values, or those that there are, and returns how many.
-fn numbers<T: DataType<T: Into<f64>>>(
+fn numbers<N, T: DataType<T: Into<N>>>(
     mut reader: ColumnReaderImpl<T>,
     rows: usize,
     nullable: bool,
-    values: &mut Vec<f64>,
+    values: &mut Vec<N>,
 ) -> Result<usize, ParquetError> {
     let (mut batch, mut levels, mut rest, mut count) = (Vec::new(), Vec::new(), rows, 0);
     while rest > 0 {
@@ -261,14 +275,27 @@ fn numbers<T: DataType<T: Into<f64>>>(
     Ok(count)
 }
 
+/// The values of a column: times may be whole numbers.
+#[derive(Clone, Debug, Default)]
+struct Values {
+    reals: Vec<f64>,
+    whole: Vec<i64>,
+}
+
+impl Values {
+    fn times(self, times: &mut Times) -> Result<(), String> {
+        self.reals.into_iter().try_for_each(|time| times.push_real(time))?;
+        self.whole.into_iter().try_for_each(|time| times.push(&time.to_string()))
+    }
+}
+
 /// Returns the trajectory of columns that are equally long.
-fn assembled(layout: Layout, columns: Vec<Vec<f64>>, about: Option<About>) -> Trajectory {
-    let Layout { roles, mut arms } = layout;
-    let samples = columns.first().map_or(0, Vec::len);
-    let mut times = Vec::new();
-    for (column, role) in columns.into_iter().zip(roles) {
+fn assembled(layout: Layout, times: Vec<f64>, columns: Vec<Values>, about: Option<About>) -> Trajectory {
+    let Layout { roles, mut arms, .. } = layout;
+    let samples = times.len();
+    for (Values { reals: column, .. }, role) in columns.into_iter().zip(roles) {
         match role {
-            Role::Time => times = column,
+            Role::Time | Role::Nanoseconds | Role::Other => {}
             Role::Error { arm } => arms[arm].errors = column,
             Role::Joint { quantity, arm, joint } => {
                 let joints = arms[arm].joints.len();

@@ -11,7 +11,7 @@ use super::error::{Problem, TrajectoryError, TrajectoryErrorKind};
 #[cfg(not(feature = "parquet"))]
 use super::parquet_absent::ParquetAbsent;
 use super::quantity::Quantity;
-use super::{ArmTrajectory, Csv, Mcap, Npz, Ros2Yaml, Trajectory};
+use super::{ArmTrajectory, Csv, Json, Mcap, Npz, ReadOptions, Reading, Ros2Yaml, Trajectory, adjust};
 
 /// The longest file that is read [bytes].
 const LONGEST: u64 = 4 << 30;
@@ -53,11 +53,12 @@ pub trait TrajectoryReader {
     /// Whether the file is of this format, by its first bytes or else its name.
     fn knows(&self, source: Source<'_>) -> bool;
 
-    /// Returns the trajectory in the file.
+    /// Returns the trajectory in the file, with what was recognised and assumed. What the options say of columns and times is done
+    /// here, what they say of names and angles afterwards.
     ///
     /// # Errors
     /// What is wrong with it.
-    fn read(&self, source: Source<'_>) -> Result<Trajectory, Problem>;
+    fn read(&self, source: Source<'_>, options: &ReadOptions) -> Result<Reading, Problem>;
 }
 
 /// The formats, those with unmistakable first bytes first; the last one takes everything.
@@ -68,21 +69,30 @@ const READERS: &[&dyn TrajectoryReader] = &[
     &Parquet,
     #[cfg(not(feature = "parquet"))]
     &ParquetAbsent,
+    &Json,
     &Ros2Yaml { machine: String::new() },
     &Csv,
 ];
 
 impl Trajectory {
     /// Returns the trajectory in a file of any format that can be read: comma-separated values, NumPy
-    /// arrays, tables of Parquet (with the feature of that name), messages as YAML, recordings (MCAP).
+    /// arrays, tables of Parquet (with the feature of that name), messages as YAML or JSON, recordings (MCAP).
     ///
     /// # Errors
     /// [`TrajectoryError`] with the place where the text is wrong: the file can not be read, its values are not finite,
     /// its times do not increase, or it has less than two samples.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, TrajectoryError> {
+        Self::read_with(path, &ReadOptions::default()).map(|reading| reading.trajectory)
+    }
+
+    /// As [`Trajectory::read`], with options, and with what was recognised and assumed.
+    ///
+    /// # Errors
+    /// As [`Trajectory::read`], and where the options do not fit the file.
+    pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Reading, TrajectoryError> {
         let path = path.as_ref();
         let bytes = bytes_of(path)?;
-        Self::from_bytes(path, &bytes)
+        Self::from_bytes_with(path, &bytes, options)
     }
 
     /// As [`Trajectory::read`], from the bytes that were read from the file at `path`.
@@ -90,16 +100,32 @@ impl Trajectory {
     /// # Errors
     /// As [`Trajectory::read`].
     pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Self, TrajectoryError> {
+        Self::from_bytes_with(path, bytes, &ReadOptions::default()).map(|reading| reading.trajectory)
+    }
+
+    /// As [`Trajectory::read_with`], from the bytes that were read from the file at `path`.
+    ///
+    /// # Errors
+    /// As [`Trajectory::read_with`].
+    pub fn from_bytes_with(
+        path: &Path,
+        bytes: &[u8],
+        options: &ReadOptions,
+    ) -> Result<Reading, TrajectoryError> {
         let source = Source { path, bytes };
         let reader =
             READERS.iter().find(|reader| reader.knows(source)).unwrap_or(&READERS[READERS.len() - 1]);
-        let read = reader.read(source).and_then(checked);
+        let read = reader.read(source, options).and_then(|reading| adjust::adjusted(reading, options));
+        let read = read.and_then(|reading| {
+            checked(&reading.trajectory)?;
+            Ok(reading)
+        });
         read.map_err(|problem| problem.within(path, source.text().unwrap_or_default()))
     }
 }
 
 /// Holds what was read against what every trajectory keeps to; readers of text have said so before, with the place.
-fn checked(trajectory: Trajectory) -> Result<Trajectory, Problem> {
+fn checked(trajectory: &Trajectory) -> Result<(), Problem> {
     if trajectory.arms.iter().all(|arm| arm.joints.is_empty()) {
         return Err(Problem::new("no joint moves here: there is no column of joint positions"));
     }
@@ -122,7 +148,7 @@ fn checked(trajectory: Trajectory) -> Result<Trajectory, Problem> {
         return Err(Problem::new(format!("it holds {value}, which is not a finite number")));
     }
     match trajectory.times.windows(2).position(|pair| pair[1] <= pair[0]) {
-        None => Ok(trajectory),
+        None => Ok(()),
         Some(n) => Err(Problem::new(not_later(trajectory.times[n], trajectory.times[n + 1]))),
     }
 }
@@ -137,7 +163,8 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, TrajectoryError> {
     let file = File::open(path).map_err(|e| unreadable(&e))?;
     let is_file = file.metadata().is_ok_and(|metadata| metadata.is_file());
     let most = if is_file { LONGEST } else { LONGEST_STREAM };
-    let mut bytes = Vec::new();
+    let length = file.metadata().map_or(0, |metadata| metadata.len().min(most));
+    let mut bytes = Vec::with_capacity(if is_file { length as usize + 1 } else { 0 });
     file.take(most + 1).read_to_end(&mut bytes).map_err(|e| unreadable(&e))?;
     if bytes.len() as u64 <= most {
         return Ok(bytes);

@@ -7,10 +7,11 @@ use super::clock::Stamp;
 use super::controller::{Refusal, check_command};
 use super::error::Problem;
 use super::group::Group;
+use super::messages::Messages;
 use super::quantity::Quantity;
 use super::read::{Source, TrajectoryReader};
-use super::yaml::{self, Node};
-use super::{About, ArmTrajectory, Machine, Recording, Trajectory, TrajectoryFormat};
+use super::yaml;
+use super::{About, Machine, ReadOptions, Reading, Recording, Trajectory, TrajectoryFormat};
 
 /// The line of a comment that has the machine's name.
 const MACHINE: &str = "# machine: ";
@@ -20,6 +21,9 @@ const MACHINE: &str = "# machine: ";
 ///
 /// What the joint trajectory controller of `ros2_control` refuses is refused before anything is written: times that do not
 /// increase in nanoseconds or have more than 31 bits of seconds, an end that is not at rest, values that are not finite.
+///
+/// Read are joint trajectories of ROS 1 and ROS 2, alone or within goals, results, robot and display trajectories, and joint
+/// states, as documents one after another or as a list.
 #[derive(Clone, Debug)]
 pub struct Ros2Yaml {
     /// The machine's name, or that of an arm that stands alone.
@@ -138,75 +142,31 @@ fn write_joint_trajectory(
 
 impl TrajectoryReader for Ros2Yaml {
     fn knows(&self, source: Source<'_>) -> bool {
-        source.has_extension(&["yaml", "yml"]) || source.bytes.starts_with(MACHINE.as_bytes())
+        let is_named = source.has_extension(&["yaml", "yml"]) || source.bytes.starts_with(MACHINE.as_bytes());
+        is_named || !source.has_extension(&["csv", "tsv"]) && begins_with_a_key(source)
     }
 
-    fn read(&self, source: Source<'_>) -> Result<Trajectory, Problem> {
+    fn read(&self, source: Source<'_>, options: &ReadOptions) -> Result<Reading, Problem> {
         let text = source.text()?;
         let comments = || text.lines().take_while(|line| line.starts_with('#'));
-        let name = comments().find_map(|line| line.strip_prefix(MACHINE)).unwrap_or("arm");
-        let documents = yaml::documents(text)?;
-        let mut found = Vec::new();
-        for document in &documents {
-            joint_trajectories(document, &mut found);
-        }
-        let [message] = found[..] else {
-            let at = found.get(1).map_or(0, |node| node.at());
-            let message = format!(
-                "expected one joint trajectory (`joint_names` with `points`), here are {}",
-                found.len()
-            );
-            return Err(Problem::at(at, message));
-        };
-        let mut trajectory = trajectory_of(message, name)?;
+        let mut messages = Messages::new(options);
+        yaml::documents(text, &mut |node| messages.take(node))?;
+        let mut reading = messages.finish(comments().find_map(|line| line.strip_prefix(MACHINE)))?;
         let entries = comments().filter_map(|line| line.strip_prefix("# ")?.split_once(": "));
-        trajectory.about = About::from_entries(entries);
-        Ok(trajectory)
+        reading.trajectory.about = About::from_entries(entries);
+        Ok(reading)
     }
 }
 
-/// Finds joint trajectories: a message itself, or within a goal of a controller, a robot's or a display trajectory.
-fn joint_trajectories<'n, 't>(node: &'n Node<'t>, found: &mut Vec<&'n Node<'t>>) {
-    if node.get("joint_names").is_some() && node.get("points").is_some() {
-        found.push(node);
-        return;
-    }
-    for key in ["goal", "trajectory", "joint_trajectory"] {
-        match node.get(key) {
-            Some(inner) if inner.items().is_some() => {
-                inner.items().into_iter().flatten().for_each(|item| joint_trajectories(item, found));
-            }
-            Some(inner) => joint_trajectories(inner, found),
-            None => {}
-        }
-    }
-}
-
-fn trajectory_of(message: &Node<'_>, name: &str) -> Result<Trajectory, Problem> {
-    let names = message.need("joint_names")?.list("a list of names")?;
-    let joints: Vec<String> =
-        names.iter().map(|name| name.text().map(str::to_owned)).collect::<Result<_, _>>()?;
-    let mut arm = ArmTrajectory { joints, ..ArmTrajectory::empty(name) };
-    let mut times: Vec<f64> = Vec::new();
-    let points = message.need("points")?.list("a list of points")?;
-    let is_known = |quantity: &Quantity| {
-        points.first().and_then(|point| point.get(quantity.plural())).is_some_and(|list| !list.is_empty())
-    };
-    let known: Vec<Quantity> = rates().filter(is_known).collect();
-    for point in points {
-        let span = point.need("time_from_start")?;
-        let time = span.need("sec")?.number()? + 0.0;
-        let nanosec = span.need("nanosec").or_else(|e| span.need("nanosecs").map_err(|_| e))?.number()?;
-        let time = Stamp { sec: time as i32, nanosec: nanosec as u32 }.seconds();
-        if times.last().is_some_and(|&before| time <= before) {
-            return Err(Problem::at(span.at(), super::read::not_later(times[times.len() - 1], time)));
-        }
-        times.push(time);
-        point.need("positions")?.numbers(arm.joints.len(), &mut arm.positions)?;
-        for &quantity in &known {
-            let joints = arm.joints.len();
-            point.need(quantity.plural())?.numbers(joints, arm.of_mut(quantity))?;
-        }
-    }
-    Ok(Trajectory { about: None, times, arms: vec![arm] })
+/// Whether a text begins as a message does that is printed: with a word and a colon, or with the line between messages.
+fn begins_with_a_key(source: Source<'_>) -> bool {
+    let start = &source.bytes[..source.bytes.len().min(1000)];
+    let text = String::from_utf8_lossy(start);
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    lines.next().is_some_and(|line| {
+        let word = line.trim_start_matches("- ").split(':').next().unwrap_or_default();
+        let is_word = word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        line.starts_with("---")
+            || (is_word && !word.is_empty() && line.len() > word.len() && line.contains(':'))
+    })
 }

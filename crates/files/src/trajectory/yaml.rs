@@ -1,65 +1,91 @@
-//! As much of YAML as messages need: documents as trees that know their places, and numbers that every reader takes for
-//! numbers.
-
-use std::borrow::Cow;
+//! As much of YAML as messages need: documents, and numbers that every reader takes for numbers.
 
 use granit_parser::{Event, Parser, ScanError, Span};
 
 use super::digits::push_shortest;
 use super::error::Problem;
+use super::node::Node;
+use super::points::{POINTS, Points};
+use super::quick_yaml;
 
-/// A node of a document, and the byte at which it begins.
-#[derive(Clone, Debug)]
-pub(super) enum Node<'t> {
-    Scalar(Cow<'t, str>, usize),
-    List(Vec<Node<'t>>, usize),
-    Map(Vec<(Cow<'t, str>, Node<'t>)>, usize),
+/// What takes documents, one after another.
+pub(super) type Sink<'s, 't> = dyn FnMut(Node<'t>) -> Result<(), Problem> + 's;
+
+/// Hands the documents of a text on, each as soon as it is read.
+pub(super) fn documents<'t>(text: &'t str, sink: &mut Sink<'_, 't>) -> Result<(), Problem> {
+    // Directives and anchors belong to documents beside them or to parts that are far apart: then the text is read as a whole.
+    if text.starts_with('%') || text.contains("\n%") {
+        return parsed(text, 0, sink);
+    }
+    let mut start = 0;
+    while start < text.len() {
+        let (end, next) = document_end(text, start);
+        document(&text[start..end], start, sink)?;
+        start = next;
+    }
+    Ok(())
 }
 
-/// Returns the documents of a text.
-pub(super) fn documents(text: &str) -> Result<Vec<Node<'_>>, Problem> {
-    let mut reader = Reader { text, parser: Parser::new_from_str(text) };
-    let mut documents = Vec::new();
+/// Hands the document of a part of a text on, if there is one; the part begins at a byte.
+pub(super) fn document<'t>(part: &'t str, base: usize, sink: &mut Sink<'_, 't>) -> Result<(), Problem> {
+    match quick_yaml::document(part, base) {
+        Some(node) => sink(node),
+        None => parsed(part, base, sink),
+    }
+}
+
+/// Where the document that begins there ends, and where the next one begins: documents are separated by lines of `---`, and
+/// nothing else may begin a line so.
+fn document_end(text: &str, start: usize) -> (usize, usize) {
+    let mut line = start;
+    loop {
+        let rest = &text[line..];
+        if rest.starts_with("---") || rest.starts_with("...") {
+            return (line, line + 3);
+        }
+        match rest.find("\n---").into_iter().chain(rest.find("\n...")).min() {
+            Some(offset) => line += offset + 1,
+            None => return (text.len(), text.len()),
+        }
+    }
+}
+
+/// As [`documents`], by a parser of all of YAML, of a part of a text that begins at a byte.
+fn parsed<'t>(text: &'t str, base: usize, sink: &mut Sink<'_, 't>) -> Result<(), Problem> {
+    let mut reader = Reader { text, base, parser: Parser::new_from_str(text) };
     while let Some((event, span)) = reader.next()? {
         match event {
             Event::StreamStart | Event::StreamEnd | Event::DocumentStart(..) | Event::DocumentEnd => {}
-            event => documents.push(reader.node(event, &span)?),
+            event => sink(reader.node(event, &span)?)?,
         }
     }
-    Ok(documents)
+    Ok(())
 }
 
 struct Reader<'t, P> {
     text: &'t str,
+    base: usize,
     parser: P,
 }
 
 impl<'t, P: Iterator<Item = Result<(Event<'t>, Span), ScanError>>> Reader<'t, P> {
     fn next(&mut self) -> Result<Option<(Event<'t>, Span)>, Problem> {
         self.parser.next().transpose().map_err(|e| {
-            let at = byte_of(self.text, e.marker().line(), e.marker().col());
+            let at = self.base + byte_of(self.text, e.marker().line(), e.marker().col());
             Problem::at(at, format!("not YAML: {}", e.info()))
         })
     }
 
     fn need(&mut self) -> Result<(Event<'t>, Span), Problem> {
-        self.next()?.ok_or_else(|| Problem::at(self.text.len(), "the document ends too early"))
+        self.next()?.ok_or_else(|| Problem::at(self.base + self.text.len(), "the document ends too early"))
     }
 
     /// The parser bounds how deep documents nest.
     fn node(&mut self, event: Event<'t>, span: &Span) -> Result<Node<'t>, Problem> {
-        let at = start(self.text, span);
+        let at = self.start(span);
         match event {
             Event::Scalar(text, ..) => Ok(Node::Scalar(text, at)),
-            Event::SequenceStart(..) => {
-                let mut items = Vec::new();
-                loop {
-                    match self.need()? {
-                        (Event::SequenceEnd, _) => return Ok(Node::List(items, at)),
-                        (event, span) => items.push(self.node(event, &span)?),
-                    }
-                }
-            }
+            Event::SequenceStart(..) => self.list(at, None),
             Event::MappingStart(..) => {
                 let mut entries = Vec::new();
                 loop {
@@ -68,21 +94,47 @@ impl<'t, P: Iterator<Item = Result<(Event<'t>, Span), ScanError>>> Reader<'t, P>
                         return Ok(Node::Map(entries, at));
                     }
                     let Node::Scalar(key, _) = self.node(event, &key_span)? else {
-                        return Err(Problem::at(start(self.text, &key_span), "a key has to be a word"));
+                        return Err(Problem::at(self.start(&key_span), "a key has to be a word"));
                     };
-                    let (event, span) = self.need()?;
-                    entries.push((key, self.node(event, &span)?));
+                    let value = match self.need()? {
+                        (Event::SequenceStart(..), span) if key == POINTS => {
+                            self.list(self.start(&span), Some(Points::new(self.start(&span))))?
+                        }
+                        (event, span) => self.node(event, &span)?,
+                    };
+                    entries.push((key, value));
                 }
             }
             _ => Err(Problem::at(at, "aliases are not read here; write the value itself")),
         }
     }
-}
 
-fn start(text: &str, span: &Span) -> usize {
-    match span.byte_range() {
-        Some(range) => range.start,
-        None => byte_of(text, span.start.line(), span.start.col()),
+    /// A list, or points where all items are maps.
+    fn list(&mut self, at: usize, mut points: Option<Points>) -> Result<Node<'t>, Problem> {
+        let mut items = Vec::new();
+        loop {
+            let (event, span) = self.need()?;
+            if matches!(event, Event::SequenceEnd) {
+                break;
+            }
+            let item = self.node(event, &span)?;
+            match &mut points {
+                Some(points) if items.is_empty() && matches!(item, Node::Map(..)) => points.push(&item)?,
+                _ => items.push(item),
+            }
+        }
+        Ok(match points {
+            Some(points) if items.is_empty() => Node::Points(Box::new(points), at),
+            _ => Node::List(items, at),
+        })
+    }
+
+    fn start(&self, span: &Span) -> usize {
+        self.base
+            + match span.byte_range() {
+                Some(range) => range.start,
+                None => byte_of(self.text, span.start.line(), span.start.col()),
+            }
     }
 }
 
@@ -92,68 +144,6 @@ fn byte_of(text: &str, line: usize, column: usize) -> usize {
     let before: usize = lines.map(str::len).sum();
     let rest = &text[before..];
     before + rest.char_indices().nth(column).map_or(rest.len(), |(byte, _)| byte)
-}
-
-impl<'t> Node<'t> {
-    pub(super) fn at(&self) -> usize {
-        match self {
-            Self::Scalar(_, at) | Self::List(_, at) | Self::Map(_, at) => *at,
-        }
-    }
-
-    pub(super) fn get(&self, key: &str) -> Option<&Node<'t>> {
-        let Self::Map(entries, _) = self else { return None };
-        entries.iter().find(|(known, _)| known == key).map(|(_, node)| node)
-    }
-
-    pub(super) fn items(&self) -> Option<&[Node<'t>]> {
-        if let Self::List(items, _) = self { Some(items) } else { None }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.items().is_some_and(<[_]>::is_empty)
-    }
-
-    pub(super) fn need(&self, key: &str) -> Result<&Node<'t>, Problem> {
-        self.get(key).ok_or_else(|| Problem::at(self.at(), format!("`{key}` is missing here")))
-    }
-
-    pub(super) fn list(&self, what: &str) -> Result<&[Node<'t>], Problem> {
-        self.items().ok_or_else(|| Problem::at(self.at(), format!("expected {what}")))
-    }
-
-    pub(super) fn text(&self) -> Result<&str, Problem> {
-        if let Self::Scalar(text, _) = self {
-            Ok(text)
-        } else {
-            Err(Problem::at(self.at(), "expected a name"))
-        }
-    }
-
-    pub(super) fn number(&self) -> Result<f64, Problem> {
-        let text = self.text()?;
-        let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
-        value.ok_or_else(|| {
-            let shown: String = text.chars().take(40).collect();
-            Problem::at(self.at(), format!("`{}` is not a finite number", shown.escape_debug()))
-        })
-    }
-
-    /// Appends the numbers of a list that has so many.
-    pub(super) fn numbers(&self, count: usize, into: &mut Vec<f64>) -> Result<(), Problem> {
-        let items = self.list("a list of numbers")?;
-        if items.len() != count {
-            let got = items.len();
-            return Err(Problem::at(
-                self.at(),
-                format!("expected {count} numbers, one per joint, got {got}"),
-            ));
-        }
-        items.iter().try_for_each(|item| {
-            into.push(item.number()?);
-            Ok(())
-        })
-    }
 }
 
 /// Returns a text in double quotes; what JSON escapes, YAML reads.
@@ -185,6 +175,15 @@ pub(super) fn push_numbers(text: &mut String, values: impl Iterator<Item = f64>)
 mod tests {
     use super::*;
 
+    fn all(text: &str) -> Result<Vec<Node<'_>>, Problem> {
+        let mut all = Vec::new();
+        documents(text, &mut |node| {
+            all.push(node);
+            Ok(())
+        })?;
+        Ok(all)
+    }
+
     #[test]
     fn numbers_have_a_point_and_a_signed_exponent() {
         let mut text = String::new();
@@ -194,12 +193,14 @@ mod tests {
 
     #[test]
     fn places_are_bytes() {
-        let text = "a: \u{e9}\nb: [1, x]\n";
-        let documents = documents(text).unwrap();
-        let list = documents[0].get("b").unwrap().items().unwrap();
-        assert_eq!(list[1].at(), text.find('x').unwrap());
-        assert!(list[1].number().is_err());
-        assert!(super::documents("a: [1").is_err());
-        assert!(super::documents("a: *b").is_err());
+        for text in ["a: \u{e9}\nb: [1, x]\n", "a: &m \u{e9}\nb: [1, x]\n", "c: 1\n---\na: 1\nb: [1, x]\n"] {
+            let documents = all(text).unwrap();
+            let list = documents[documents.len() - 1].get("b").unwrap().items().unwrap();
+            assert_eq!(list[1].at(), text.find('x').unwrap());
+            assert!(list[1].number().is_err());
+        }
+        assert!(all("a: [1").is_err());
+        assert!(all("a: *b").is_err());
+        assert_eq!(all("a: 1\n---\na: 2\n...\n---\n").unwrap().len(), 2);
     }
 }

@@ -5,3 +5,4 @@ mod own_kinds;
 mod trajectories;
 mod trajectory_csv;
 mod trajectory_formats;
+mod trajectory_others;

@@ -1,0 +1,65 @@
+//! What to try where a file calls its joints by other names than the robot.
+
+use super::csv_layout::listed;
+use super::{ReadOptions, Trajectory};
+
+impl ReadOptions {
+    /// Returns what would make the names of a trajectory's joints those of the known joints, where they are not and something
+    /// would: a [prefix](ReadOptions::prefix), or [columns that count joints](ReadOptions::map).
+    pub fn hint(&self, trajectory: &Trajectory) -> Option<String> {
+        let all: Vec<&str> = trajectory.arms.iter().flat_map(|arm| &arm.joints).map(String::as_str).collect();
+        if self.joints.is_empty() || all.iter().all(|joint| self.joint(joint).is_some()) {
+            return None;
+        }
+        self.prefix_hint(&all).or_else(|| self.counted_hint(&all))
+    }
+
+    /// The longest text that can be taken from the names of joints so that they are known, of as many as there are.
+    fn prefix_hint(&self, all: &[&str]) -> Option<String> {
+        let prefix_of = |joint: &&str| {
+            let rests = self.joints.iter().filter_map(|known| joint.strip_suffix(known.name.as_str()));
+            rests.filter(|prefix| !prefix.is_empty()).min_by_key(|prefix| prefix.len()).map(str::to_owned)
+        };
+        let mut prefixes: Vec<String> = all.iter().filter_map(prefix_of).collect();
+        prefixes.sort();
+        prefixes.dedup();
+        let counts = prefixes.into_iter().map(|prefix| {
+            let own = all.iter().filter_map(|joint| joint.strip_prefix(prefix.as_str()));
+            (own.filter(|own| self.joint(own).is_some()).count(), prefix)
+        });
+        let (count, prefix) = counts.max_by_key(|(count, _)| *count)?;
+        let of = if count == all.len() {
+            format!("all {count} joints")
+        } else {
+            format!("{count} of {} joints", all.len())
+        };
+        Some(format!(
+            "{of} have the prefix `{prefix}`, which the robot's have not: --prefix {prefix} takes it off"
+        ))
+    }
+
+    /// Columns that count as many joints as the robot has.
+    fn counted_hint(&self, all: &[&str]) -> Option<String> {
+        let own = self.joints.iter().filter(|joint| !joint.follows).count();
+        let stem = |name: &&str| name.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
+        let mut stems: Vec<(String, usize)> = Vec::new();
+        for name in all.iter().filter(|name| name.ends_with(|c: char| c.is_ascii_digit())) {
+            let stem = stem(name);
+            match stems.iter_mut().find(|(known, _)| *known == stem) {
+                Some((_, count)) => *count += 1,
+                None => stems.push((stem, 1)),
+            }
+        }
+        stems.retain(|(_, count)| *count == own && own > 1);
+        let measured = |(stem, _): &(String, usize)| !(stem.starts_with("actual_q") || stem.starts_with('q'));
+        stems.sort_by_key(measured);
+        let [(first, _), ..] = &stems[..] else { return None };
+        let patterns: Vec<String> = stems.iter().map(|(stem, _)| format!("{stem}*")).collect();
+        let patterns: Vec<&str> = patterns.iter().map(String::as_str).collect();
+        let list = listed(&patterns)?;
+        Some(format!(
+            "the columns {list} count {own} joints, as many as the robot has: --map '{first}*' takes some for its positions in its \
+             order, and leaves out the others"
+        ))
+    }
+}

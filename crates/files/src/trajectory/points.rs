@@ -1,0 +1,90 @@
+//! The points of a joint trajectory.
+
+use super::error::Problem;
+use super::node::Node;
+use super::quantity::Quantity;
+use super::times::Times;
+use super::{ArmTrajectory, Trajectory};
+
+/// The key that has them.
+pub(super) const POINTS: &str = "points";
+
+/// Points while they are read, as plain numbers.
+#[derive(Clone, Debug)]
+pub(super) struct Points {
+    /// Where the first one begins.
+    first: usize,
+    width: usize,
+    times: Times,
+    values: [Vec<f64>; 3],
+    known: [bool; 3],
+}
+
+impl Points {
+    /// No points yet, of a list that begins at a byte.
+    pub(super) fn new(at: usize) -> Self {
+        let values = [Vec::new(), Vec::new(), Vec::new()];
+        Self { first: at, width: 0, times: Times::new(None), values, known: [true, false, false] }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.times.len() == 0
+    }
+
+    /// Adds a point.
+    pub(super) fn push(&mut self, point: &Node<'_>) -> Result<(), Problem> {
+        if self.is_empty() {
+            self.begin(point)?;
+        }
+        let span = point.need("time_from_start")?;
+        let pushed = match span.nanoseconds()? {
+            Some(nanoseconds) => self.times.push_nanoseconds(nanoseconds),
+            None if span.text().is_err() => {
+                return Err(Problem::at(
+                    span.at(),
+                    "expected seconds, or `sec` and `nanosec`, or `secs` and `nsecs`",
+                ));
+            }
+            None => self.times.push(span.text()?),
+        };
+        pushed.map_err(|message| Problem::at(span.at(), message))?;
+        for (quantity, values) in Quantity::ALL.into_iter().zip(&mut self.values) {
+            if self.known[quantity as usize] {
+                point.need(quantity.plural())?.numbers(self.width, values)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What the first point has, all have.
+    fn begin(&mut self, point: &Node<'_>) -> Result<(), Problem> {
+        let positions = point.need(Quantity::Position.plural())?;
+        self.first = positions.at();
+        self.width = positions.list("a list of numbers")?.len();
+        for quantity in [Quantity::Velocity, Quantity::Acceleration] {
+            self.known[quantity as usize] =
+                point.get(quantity.plural()).is_some_and(|list| list.items().is_some() && !list.is_empty());
+        }
+        Ok(())
+    }
+
+    /// Returns the trajectory of joints of those names.
+    pub(super) fn finish(
+        self,
+        name: &str,
+        joints: Vec<String>,
+        notes: &mut Vec<String>,
+    ) -> Result<Trajectory, Problem> {
+        if self.width != joints.len() {
+            let (count, got) = (joints.len(), self.width);
+            return Err(Problem::at(
+                self.first,
+                format!("expected {count} numbers, one per joint, got {got}"),
+            ));
+        }
+        let [positions, velocities, accelerations] = self.values;
+        let arm =
+            ArmTrajectory { joints, positions, velocities, accelerations, ..ArmTrajectory::empty(name) };
+        Ok(Trajectory { about: None, times: self.times.finish(notes), arms: vec![arm] })
+    }
+}
