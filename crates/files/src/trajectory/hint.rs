@@ -11,7 +11,8 @@ impl ReadOptions {
         if self.joints.is_empty() || all.iter().all(|joint| self.joint(joint).is_some()) {
             return None;
         }
-        self.prefix_hint(&all).or_else(|| self.counted_hint(&all))
+        let is_strange = all.iter().all(|joint| self.joint(joint).is_none());
+        self.prefix_hint(&all).or_else(|| if is_strange { self.counted_hint(&all) } else { None })
     }
 
     /// What stands around the names of known joints, in as many names as there are.
