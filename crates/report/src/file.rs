@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 
 use kinstep::robot::names::shown;
 
+/// What is gathered before it is handed to the system [bytes].
+const BUFFER: usize = 1 << 18;
+
 /// Why a file was not written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
@@ -102,7 +105,7 @@ fn write_beside(target: &Path, content: impl FnOnce(&mut dyn Write) -> io::Resul
 }
 
 fn write_part(part: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let mut out = BufWriter::new(File::create(part)?);
+    let mut out = BufWriter::with_capacity(BUFFER, File::create(part)?);
     content(&mut out)?;
     out.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
 }

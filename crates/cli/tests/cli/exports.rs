@@ -303,3 +303,38 @@ fn joints_of_no_arm_and_arms_without_their_joints_are_refused() {
         assert!([2, 3].contains(&run.code) && run.err.contains(told), "{}: {}", run.code, run.err);
     }
 }
+
+#[test]
+fn files_of_others_are_recognised_and_options_say_what_can_not_be() {
+    let prefixed = "t;left_j1;left_j2;left_j3;left_j4\n0;0,1;0;0;0\n0,5;0,1;0;0;0\n";
+    let counted = "timestamp q_0 q_1 q_2 q_3 i_0\n0 10 0 0 0 x\n1 10 0 0 0 x\n";
+    let desk = Desk::new(&[("a.csv", prefixed), ("b.csv", counted), ("c.csv", "t,j1\n0,0\n9000000,0\n")]);
+    let robot = ["--robot", "planar4"];
+    let run = desk.run(&[&["check", "a.csv"], &robot[..]].concat()).expect(3);
+    assert!(
+        run.err.contains("all 4 joints have the prefix `left_`") && run.err.contains("--prefix left_"),
+        "{}",
+        run.err
+    );
+    let run = desk.run(&[&["check", "a.csv", "--prefix", "left_"], &robot[..]].concat()).expect(0);
+    assert!(run.err.contains("note: numbers have decimal commas"), "{}", run.err);
+    let checked =
+        desk.run(&[&["check", "a.csv", "--prefix", "left_", "--json"], &robot[..]].concat()).expect(0).json();
+    assert_eq!(checked["notes"].as_array().unwrap().len(), 2, "{checked}");
+    let map = ["--map", "q_*", "--degrees"];
+    let run = desk.run(&[&["check", "b.csv", "--quiet"], &map[..], &robot[..]].concat()).expect(0);
+    assert_eq!(run.err, "");
+    let exported =
+        desk.run(&[&["export", "b.csv", "--format", "npz"], &map[..], &robot[..]].concat()).expect(0);
+    assert!(
+        exported.err.contains("counts the robot's joints in its order: j1, j2, j3, j4"),
+        "{}",
+        exported.err
+    );
+    let exported = Trajectory::read(desk.path("trajectory.npz")).unwrap();
+    assert_eq!(exported.arms[0].positions[0], 10_f64.to_radians());
+    let run = desk.run(&["export", "c.csv", "--format", "csv", "--json"]).expect(0);
+    assert!(run.json()["warnings"][0].as_str().unwrap().contains("--time-unit"), "{}", run.out);
+    let run = desk.run(&[&["check", "b.csv", "--map", "p_*"], &robot[..]].concat()).expect(2);
+    assert!(run.err.contains("--map p_*: no column is called so"), "{}", run.err);
+}

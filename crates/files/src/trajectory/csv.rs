@@ -65,7 +65,11 @@ impl TrajectoryReader for Csv {
         let layout = layout(&fields, &first, options, &mut notes)?;
         let mut samples = Samples::new(layout, options, separator != Separator::Comma);
         samples.reserve(text.bytes().filter(|&byte| byte == b'\n').count());
-        while records.read(&mut fields)? {
+        loop {
+            while records.take_plain(|line| samples.push_numbers(line)) {}
+            if !records.read(&mut fields)? {
+                break;
+            }
             samples.push(&fields, records.end())?;
         }
         let mut trajectory = samples.finish(text.trim_end().len(), &mut notes)?;

@@ -73,7 +73,7 @@ impl Layout {
         notes: &mut Vec<String>,
     ) -> Result<Self, Problem> {
         let refuse = |(column, message): Refused| Problem { message, at: place(column) };
-        check_names(head.names).map_err(refuse)?;
+        check_names(head).map_err(refuse)?;
         let parts = if !options.map.is_empty() {
             Some(mapped_parts(head.names, options, notes).map_err(refuse)?)
         } else if let Some(parts) = slash_parts(head.names) {
@@ -189,10 +189,14 @@ pub(super) fn listed<'n>(names: &[&'n str]) -> Option<String> {
     (!shown.is_empty()).then(|| format!("{}{rest}", shown.join(", ")))
 }
 
-fn check_names(names: &[&str]) -> Result<(), Refused> {
+fn check_names(Head { names, first }: Head<'_>) -> Result<(), Refused> {
     let mut known: HashSet<&str> = HashSet::new();
     for (column, name) in names.iter().enumerate() {
-        // Tables of pandas begin with a column that counts the rows and has no name.
+        // Tables of pandas begin with a column that counts the rows and has no name; lines of others end with a comma.
+        let ends = column + 1 == names.len() && first.len() == names.len() && first[column].is_empty();
+        if name.is_empty() && ends {
+            continue;
+        }
         if name.is_empty() && (column > 0 || names.len() < 3) {
             return Err((column, "this column has no name".to_owned()));
         }

@@ -3,6 +3,7 @@
 use super::csv_layout::{Layout, Role};
 use super::csv_records::Field;
 use super::error::Problem;
+use super::quantity::Quantity;
 use super::times::Times;
 use super::{ReadOptions, Trajectory};
 
@@ -16,6 +17,11 @@ pub(super) struct Samples {
     may_have_commas: bool,
     has_commas: bool,
     left_out: usize,
+    /// Whether the joints of each quantity stand in their order, in a table that has no rows of others.
+    is_in_order: bool,
+    /// The values of a row that are not left out, and the place of the time among them.
+    row: Vec<f64>,
+    time: usize,
 }
 
 impl Samples {
@@ -32,11 +38,15 @@ impl Samples {
                 Role::Other => String::new(),
             }
         };
+        let mut known = layout.roles.iter().filter(|role| **role != Role::Other);
         let place = |wanted: Role| layout.roles.iter().position(|role| *role == wanted);
         Self {
             names: layout.roles.iter().map(name).collect(),
             times: Times::new(options.time_unit.or(layout.unit)),
             split_time: place(Role::Nanoseconds).and_then(|rest| Some([place(Role::Time)?, rest])),
+            is_in_order: is_in_order(&layout),
+            row: Vec::new(),
+            time: known.position(|role| *role == Role::Time).unwrap_or_default(),
             layout,
             may_have_commas,
             has_commas: false,
@@ -58,6 +68,36 @@ impl Samples {
                 _ => {}
             }
         }
+    }
+
+    /// Adds a row of nothing but numbers, and returns whether it was one; nothing is added where it was not.
+    pub(super) fn push_numbers<'f>(&mut self, mut fields: impl Iterator<Item = &'f str>) -> bool {
+        if !self.is_in_order || self.times.len() == 0 {
+            return false;
+        }
+        self.row.clear();
+        for role in &self.layout.roles {
+            let Some(field) = fields.next() else { return false };
+            if *role == Role::Other {
+                continue;
+            }
+            match field.parse::<f64>() {
+                Ok(value) if value.is_finite() => self.row.push(value),
+                _ => return false,
+            }
+        }
+        if fields.next().is_some() || !self.times.push_seconds(self.row[self.time]) {
+            return false;
+        }
+        let known = self.layout.roles.iter().filter(|role| **role != Role::Other);
+        for (role, &value) in known.zip(&self.row) {
+            match *role {
+                Role::Joint { quantity, arm, .. } => self.layout.arms[arm].of_mut(quantity).push(value),
+                Role::Error { arm } => self.layout.arms[arm].errors.push(value),
+                Role::Time | Role::Nanoseconds | Role::Other => {}
+            }
+        }
+        true
     }
 
     /// Adds a row, which ends at a byte of the text.
@@ -146,6 +186,19 @@ impl Samples {
         }
         Ok(Trajectory { about: None, times: self.times.finish(notes), arms: self.layout.arms })
     }
+}
+
+fn is_in_order(layout: &Layout) -> bool {
+    let mut next = vec![[0; Quantity::ALL.len()]; layout.arms.len()];
+    let mut is_next = |role: &Role| match *role {
+        Role::Joint { quantity, arm, joint } => {
+            next[arm][quantity as usize] += 1;
+            next[arm][quantity as usize] == joint + 1
+        }
+        Role::Nanoseconds => false,
+        Role::Time | Role::Error { .. } | Role::Other => true,
+    };
+    !layout.has_gaps && layout.roles.iter().all(&mut is_next)
 }
 
 fn number(

@@ -31,29 +31,30 @@ struct Decimal {
 impl Decimal {
     /// Takes decimals apart that have at most 17 significant digits, with or without a point and an exponent.
     fn of(plain: &[u8]) -> Self {
-        let (mut digits, mut count) = ([b'0'; SIGNIFICANT], 0);
-        let (mut is_fraction, mut exponent, mut at) = (false, -1, 0);
-        while at < plain.len() && plain[at] != b'e' {
-            match plain[at] {
-                b'.' => is_fraction = true,
-                b'0' if count == 0 => exponent -= i32::from(is_fraction),
-                digit => {
-                    if count < SIGNIFICANT {
-                        digits[count] = digit;
-                    }
-                    count += 1;
-                    exponent += i32::from(!is_fraction);
-                }
-            }
-            at += 1;
-        }
-        if count == 0 {
-            return Self { digits, exponent: 0 };
-        }
-        let is_negative = plain.get(at + 1) == Some(&b'-');
-        let size = plain[at..].iter().filter(|byte| byte.is_ascii_digit());
+        let end = plain.iter().position(|&byte| byte == b'e').unwrap_or(plain.len());
+        let (mantissa, power) = plain.split_at(end);
+        let point = mantissa.iter().position(|&byte| byte == b'.').unwrap_or(end);
+        let (whole, fraction) = (&mantissa[..point], mantissa.get(point + 1..).unwrap_or_default());
+        let leading = |digits: &[u8]| digits.iter().take_while(|&&digit| digit == b'0').count();
+        let mut digits = [b'0'; SIGNIFICANT];
+        let mut copy = |from: usize, part: &[u8]| -> usize {
+            let count = part.len().min(SIGNIFICANT - from);
+            digits[from..from + count].copy_from_slice(&part[..count]);
+            from + count
+        };
+        let first = if whole == b"0" {
+            let zeros = leading(fraction);
+            copy(0, &fraction[zeros..]);
+            if zeros == fraction.len() { 0 } else { -1 - zeros as i32 }
+        } else {
+            let count = copy(0, whole);
+            copy(count, fraction);
+            whole.len() as i32 - 1
+        };
+        let is_negative = power.get(1) == Some(&b'-');
+        let size = power.iter().filter(|byte| byte.is_ascii_digit());
         let size = size.fold(0, |size, digit| 10 * size + i32::from(digit - b'0'));
-        Self { digits, exponent: exponent + if is_negative { -size } else { size } }
+        Self { digits, exponent: first + if is_negative { -size } else { size } }
     }
 }
 

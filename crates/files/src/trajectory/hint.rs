@@ -11,31 +11,46 @@ impl ReadOptions {
         if self.joints.is_empty() || all.iter().all(|joint| self.joint(joint).is_some()) {
             return None;
         }
-        self.prefix_hint(&all).or_else(|| self.counted_hint(&all))
+        let is_strange = all.iter().all(|joint| self.joint(joint).is_none());
+        self.prefix_hint(&all).or_else(|| if is_strange { self.counted_hint(&all) } else { None })
     }
 
-    /// The longest text that can be taken from the names of joints so that they are known, of as many as there are.
+    /// What stands around the names of known joints, in as many names as there are.
     fn prefix_hint(&self, all: &[&str]) -> Option<String> {
-        let prefix_of = |joint: &&str| {
-            let rests = self.joints.iter().filter_map(|known| joint.strip_suffix(known.name.as_str()));
-            rests.filter(|prefix| !prefix.is_empty()).min_by_key(|prefix| prefix.len()).map(str::to_owned)
-        };
-        let mut prefixes: Vec<String> = all.iter().filter_map(prefix_of).collect();
-        prefixes.sort();
-        prefixes.dedup();
-        let counts = prefixes.into_iter().map(|prefix| {
-            let own = all.iter().filter_map(|joint| joint.strip_prefix(prefix.as_str()));
-            (own.filter(|own| self.joint(own).is_some()).count(), prefix)
+        let mut around: Vec<[&str; 2]> = all.iter().filter_map(|joint| self.around(joint)).collect();
+        around.sort_unstable();
+        around.dedup();
+        let counted = around.into_iter().map(|[before, after]| {
+            let own = all.iter().filter_map(|joint| joint.strip_prefix(before)?.strip_suffix(after));
+            (own.filter(|own| self.joint(own).is_some()).count(), [before, after])
         });
-        let (count, prefix) = counts.max_by_key(|(count, _)| *count)?;
+        let (count, [before, after]) = counted.max_by_key(|(count, _)| *count)?;
+        // A slip of the pen in one name is no custom of a file.
+        if count * 2 < all.len() {
+            return None;
+        }
         let of = if count == all.len() {
             format!("all {count} joints")
         } else {
             format!("{count} of {} joints", all.len())
         };
-        Some(format!(
-            "{of} have the prefix `{prefix}`, which the robot's have not: --prefix {prefix} takes it off"
-        ))
+        Some(if after.is_empty() {
+            format!(
+                "{of} have the prefix `{before}`, which the robot's have not: --prefix {before} takes it off"
+            )
+        } else {
+            format!(
+                "{of} are called `{before}JOINT{after}`: --map '{before}*{after}' takes them for their positions"
+            )
+        })
+    }
+
+    /// What stands before and behind the longest name of a known joint within another name.
+    fn around<'n>(&self, name: &'n str) -> Option<[&'n str; 2]> {
+        let known = self.joints.iter().map(|joint| joint.name.as_str());
+        let known = known.filter(|known| known.len() < name.len() && name.contains(known));
+        let (before, after) = name.split_once(known.max_by_key(|known| known.len())?)?;
+        Some([before, after])
     }
 
     /// Columns that count as many joints as the robot has.

@@ -18,6 +18,7 @@ pub mod csv_records;
 mod csv_samples;
 mod digits;
 mod error;
+mod foreign;
 mod format;
 mod formats;
 mod group;

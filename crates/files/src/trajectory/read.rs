@@ -8,6 +8,7 @@ use std::path::Path;
 #[cfg(feature = "parquet")]
 use super::Parquet;
 use super::error::{Problem, TrajectoryError, TrajectoryErrorKind};
+use super::foreign::Foreign;
 #[cfg(not(feature = "parquet"))]
 use super::parquet_absent::ParquetAbsent;
 use super::quantity::Quantity;
@@ -63,6 +64,7 @@ pub trait TrajectoryReader {
 
 /// The formats, those with unmistakable first bytes first; the last one takes everything.
 const READERS: &[&dyn TrajectoryReader] = &[
+    &Foreign,
     &Npz,
     &Mcap,
     #[cfg(feature = "parquet")]

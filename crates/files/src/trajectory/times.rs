@@ -126,6 +126,11 @@ impl Times {
         self.add(seconds)
     }
 
+    /// Adds a time \[s\] after others that were taken as they are, and returns whether it was added.
+    pub(super) fn push_seconds(&mut self, time: f64) -> bool {
+        self.exact.is_none() && self.unit.is_none() && self.add(time).is_ok()
+    }
+
     /// Adds a time of a format that has numbers.
     pub(super) fn push_real(&mut self, time: f64) -> Result<(), String> {
         // The decimals of a double read back as it was.

@@ -30,11 +30,26 @@ const NEAR: f64 = 0.2;
 pub fn questions(trajectory: &Trajectory, joints: &[KnownJoint]) -> Vec<String> {
     let mut questions: Vec<String> = time_question(trajectory).into_iter().collect();
     for arm in &trajectory.arms {
+        questions.extend(name_question(arm, joints));
         questions.extend(degree_question(arm, joints));
         questions.extend(millimetre_question(arm, joints));
         questions.extend(rate_question(arm, &trajectory.times, !questions.is_empty()));
     }
     questions
+}
+
+/// Whether a joint that no robot is known to have is called after another quantity.
+fn name_question(arm: &ArmTrajectory, joints: &[KnownJoint]) -> Option<String> {
+    const OTHERS: [&str; 7] =
+        ["velocity", "velocities", "speed", "acceleration", "effort", "torque", "current"];
+    let is_other = |name: &&String| {
+        let lower = name.to_ascii_lowercase();
+        joints.iter().all(|joint| joint.name != **name) && OTHERS.iter().any(|word| lower.ends_with(word))
+    };
+    let name = arm.joints.iter().find(is_other)?;
+    Some(format!(
+        "`{name}` is taken for the position of a joint, and its name says something else; --map takes other columns"
+    ))
 }
 
 /// The largest size of a joint's positions.

@@ -322,9 +322,28 @@ fn what_is_recognised_and_not_read_is_said() {
     assert!(options.hint(&reading.trajectory).unwrap().contains("--map 'actual_q_*'"));
     let prefixed = read("a.csv", "t,left_elbow_joint,left_wrist_1_joint\n0,0,0\n1,0,0\n", &options).unwrap();
     assert!(options.hint(&prefixed.trajectory).unwrap().contains("all 2 joints have the prefix `left_`"));
+    let around = read("a.csv", "t,- elbow_joint_position\n0,0\n1,0\n", &options).unwrap();
+    assert!(options.hint(&around.trajectory).unwrap().contains("--map '- *_position'"));
     let stripped = ReadOptions { prefix: Some("left_".to_owned()), ..options };
     let prefixed = read("a.csv", "t,left_elbow_joint,left_wrist_1_joint\n0,0,0\n1,0,0\n", &stripped).unwrap();
     assert_eq!(stripped.hint(&prefixed.trajectory), None);
+}
+
+#[test]
+fn formats_that_are_not_read_are_recognised_and_ends_of_lines_are_not_columns() {
+    for (bytes, word) in [
+        (&b"\x93NUMPY\x01\x00"[..], "savez"),
+        (b"#ROSBAG V2.0\n", "ROS 1"),
+        (b"SQLite format 3\0", "storage_id"),
+    ] {
+        let error = Trajectory::from_bytes("a.csv".as_ref(), bytes).unwrap_err();
+        assert!(error.message.contains(word), "{error}");
+    }
+    let reading = read("a.csv", ",t,a,\n0,0,1,\n1,1,2,\n", &ReadOptions::default()).unwrap();
+    assert_eq!(reading.trajectory.arms[0].joints, ["a"]);
+    assert!(reading.notes[0].contains("without a name"), "{:?}", reading.notes);
+    let effort = read("a.csv", "t,a_effort\n0,1\n1,2\n", &ReadOptions::default()).unwrap();
+    assert!(units::questions(&effort.trajectory, &[])[0].contains("`a_effort`"));
 }
 
 #[test]
