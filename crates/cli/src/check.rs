@@ -211,8 +211,11 @@ fn limits_of(arm: &ArmTrajectory, robot: &Robot, name: &str) -> Result<Vec<Limit
 }
 
 fn worst_error(arm: &ArmTrajectory, path: &Arm, times: &[f64]) -> Met {
-    let mut worst = Met { value: 0.0, t: times[0] };
-    for (error, &t) in arm.task_errors(path, times).iter().map(Vector6::norm).zip(times) {
+    let errors = arm.task_errors(path, times);
+    // The way to the path is not the path; of an arm that never comes there all counts.
+    let first = Some(path.on_path_from(times, &errors)).filter(|&first| first < times.len()).unwrap_or(0);
+    let mut worst = Met { value: 0.0, t: times[first] };
+    for (error, &t) in errors.iter().map(Vector6::norm).zip(times).skip(first) {
         if !(error <= worst.value) {
             worst = Met { value: error, t };
         }
