@@ -148,6 +148,9 @@ impl PlannerBuilder {
         let mut stepper = Multistep::new(formula, &starter, &field, 0.0, sigma, &initial)?;
         Evaluated::at_sample(&mut stepper, &mut field).scatter_to_arms();
         check_path_starts(&field)?;
+        let lead = lead_steps(&field, sigma);
+        let converges = field.arms.iter().any(|runtime| runtime.arm.convergence.is_some());
+        let factor = if converges { formula.spectral_radius(feedback.h) } else { 0.0 };
         let description = Description {
             formula: formula.id().to_owned(),
             sigma,
@@ -156,6 +159,8 @@ impl PlannerBuilder {
             start: starter.name(),
             steps,
             largest_criterion_rate,
+            lead,
+            factor: (factor, formula.steps()),
             warnings,
         };
         Ok(Planner::begin(description, stepper, field, noise))
@@ -280,11 +285,22 @@ fn check_criteria(formula: &Formula, systems: &[System], sigma: f64) -> Result<f
     Ok(limit)
 }
 
+/// How many samples the longest lead of an arm takes.
+fn lead_steps(field: &SynchronousField, sigma: f64) -> usize {
+    let longest = field.arms.iter().map(|runtime| runtime.arm.lead_duration()).fold(0.0, f64::max);
+    // A lead of a whole number of gaps takes that many.
+    (longest / sigma * (1.0 - 1e-9)).ceil() as usize
+}
+
 fn check_path_starts(field: &SynchronousField) -> Result<(), PlannerError> {
     for runtime in &field.arms {
         let distance = runtime.error.norm();
-        if distance > PATH_START_TOLERANCE {
-            return Err(PlannerError::PathStart { arm: runtime.arm.name.clone(), distance });
+        let arm = runtime.arm.name.clone();
+        if distance > PATH_START_TOLERANCE && runtime.arm.convergence.is_none() {
+            return Err(PlannerError::PathStart { arm, distance });
+        }
+        if !runtime.is_within(1.0) {
+            return Err(PlannerError::TooFar { arm, distance });
         }
     }
     for system in &field.systems {

@@ -109,6 +109,16 @@ pub enum PlannerError {
         /// Norm of the task error at the start [m or rad].
         distance: f64,
     },
+    /// The path begins so far from the tip that the arm would count as lost before the feedback could bring it in.
+    #[error(
+        "arm `{arm}`: its path begins {distance:.6} m (or rad) away from the tip at q0, further than feedback brings an arm in; lead it there instead, or change q0"
+    )]
+    TooFar {
+        /// The arm.
+        arm: String,
+        /// Norm of the task error at the start [m or rad].
+        distance: f64,
+    },
     /// Two arms move a joint in common, and start it at different positions.
     #[error(
         "arms `{arm}` and `{other}` share joint `{joint}`, which starts at {} in the one and at {} in the other; give it one position",

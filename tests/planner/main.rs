@@ -1,5 +1,6 @@
 //! Whole runs of the planner, and the laws and searches that it relies on.
 
+mod approach;
 mod doors;
 mod inverse;
 mod law_near_singularity;

@@ -125,6 +125,7 @@ fn every_frame_of_a_random_table_is_the_product_of_its_rows() {
                 alpha: 3.0 * numbers.next().unwrap(),
                 d: numbers.next().unwrap(),
                 theta: 3.0 * numbers.next().unwrap(),
+                flip: false,
                 limits: Limits::UNLIMITED,
             })
             .collect();
@@ -296,4 +297,19 @@ fn degrees_and_millimetres_in_a_table_are_questioned() {
     );
     assert!(said("{ a = 0.4, alpha = \"pi/2\", limits = [-6.5, 6.5] }").is_empty());
     std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn offsets_and_flips_are_those_of_the_robotics_toolbox() {
+    // RevoluteDH turns by -q + offset when flipped, PrismaticDH slides by q + offset.
+    let text = "convention = \"standard\"\njoint = [{ a = 0.5, alpha = \"pi/2\", offset = 0.3, flip = true }, { kind = \"prismatic\", offset = 0.2, limits = [0, 1] }]\n";
+    let robot = Robot::from_dh(&DhTable::from_toml(text).unwrap()).unwrap();
+    let chain = robot.chain("base", "tip").unwrap();
+    let by_hand = "convention = \"standard\"\njoint = [{ a = 0.5, alpha = \"pi/2\" }, { kind = \"prismatic\", limits = [-2, 2] }]\n";
+    let plain = Robot::from_dh(&DhTable::from_toml(by_hand).unwrap()).unwrap().chain("base", "tip").unwrap();
+    for (q, slide) in [(0.0, 0.0), (0.4, 0.1), (-1.3, 0.7)] {
+        let own = chain.forward(&[q, slide], &mut chain.scratch()).pose();
+        let other = plain.forward(&[-q + 0.3, slide + 0.2], &mut plain.scratch()).pose();
+        assert!((own.to_homogeneous() - other.to_homogeneous()).norm() < 1e-15);
+    }
 }

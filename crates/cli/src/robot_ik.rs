@@ -5,13 +5,13 @@ use std::fmt::Write;
 use nalgebra::{IsometryMatrix3, Quaternion, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde::Serialize;
 
-use super::arguments::{ChainArguments, InverseArguments};
+use super::arguments::{ChainArguments, InverseArguments, InverseTask};
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
 use super::robot::{believable, joint_positions, numbers, robot_words, tooled_chain};
 use super::shell::option;
 use kinstep::inverse::{Search, Solution, Target};
-use kinstep::robot::Chain;
+use kinstep::robot::{Chain, degrees_suspected};
 use kinstep_report::{Table, short};
 
 /// Below this a position counts as zero in the text [rad or m]: no double that stands beside a 1 has a place for it.
@@ -19,22 +19,27 @@ const NOTHING: f64 = 1e-16;
 
 pub(super) fn run(arguments: &InverseArguments, output: &mut Output) -> Result<Exit, Failure> {
     let (chain, _) = tooled_chain(&arguments.chain, output)?;
-    let target = target(arguments)?;
+    let (target, conditions) = target(arguments)?;
+    question_units(arguments, output);
     let mut search = Search::new().starts(arguments.starts).seed(arguments.seed);
     if let Some(q0) = &arguments.q0 {
         search = search.near(&joint_positions("--q0", Some(q0), &chain)?);
     }
     let solution = search.solve(&chain, &target).map_err(|e| Failure::usage(e.to_string()))?;
-    output.show(&Answer::new(arguments, &chain, &solution))?;
+    output.show(&Answer::new(arguments, &chain, &solution, conditions))?;
     Ok(if solution.is_found() { Exit::Done } else { Exit::Stopped })
 }
 
-fn target(arguments: &InverseArguments) -> Result<Target, Failure> {
+/// The target, and how many conditions it is.
+fn target(arguments: &InverseArguments) -> Result<(Target, usize), Failure> {
     let position = sizes("--position", &arguments.position)?;
+    let is_turned = arguments.orientation.is_some() || arguments.axis.is_some();
+    let task = arguments.task;
     let place = match position[..] {
-        [x, y] if arguments.orientation.is_none() && arguments.axis.is_none() => {
-            return Ok(Target::position_xy(x, y));
+        [x, y] if !is_turned && task.is_none_or(|task| task == InverseTask::PositionXy) => {
+            return Ok((Target::position_xy(x, y), 2));
         }
+        [x, y, _] if task == Some(InverseTask::PositionXy) => return Ok((Target::position_xy(x, y), 2)),
         [x, y, z] => Vector3::new(x, y, z),
         _ => {
             return Err(expected(
@@ -44,16 +49,30 @@ fn target(arguments: &InverseArguments) -> Result<Target, Failure> {
             ));
         }
     };
-    if let Some(text) = &arguments.axis {
-        return Ok(Target::axis(place, direction(text)?));
-    }
-    Ok(match &arguments.orientation {
-        Some(text) => {
-            let rotation = rotation(text)?;
-            Target::pose(&IsometryMatrix3::from_parts(Translation3::from(place), rotation))
+    let axis = arguments.axis.as_deref().map(direction).transpose()?;
+    let turn = arguments.orientation.as_deref().map(rotation).transpose()?;
+    match (task, axis, turn) {
+        (Some(InverseTask::Position), ..) | (None, None, None) => Ok((Target::position(place), 3)),
+        (Some(InverseTask::Axis) | None, Some(axis), _) => Ok((Target::axis(place, axis), 5)),
+        (Some(InverseTask::Axis), None, Some(turn)) => {
+            Ok((Target::axis(place, Unit::new_normalize(turn * Vector3::z())), 5))
         }
-        None => Target::position(place),
-    })
+        (Some(InverseTask::Pose) | None, _, Some(turn)) => {
+            Ok((Target::pose(&IsometryMatrix3::from_parts(Translation3::from(place), turn)), 6))
+        }
+        (Some(_), ..) => {
+            Err(Failure::usage("--task: it needs an --orientation (or, for `axis`, an --axis)".to_owned()))
+        }
+    }
+}
+
+/// Says that an orientation looks like degrees.
+fn question_units(arguments: &InverseArguments, output: &Output) {
+    let Some(text) = &arguments.orientation else { return };
+    let angles = numbers("--orientation", text).unwrap_or_default();
+    if let Some(doubt) = degrees_suspected(&angles).filter(|_| angles.len() == 3) {
+        output.remark(&format!("warning: --orientation {text}: {doubt}"));
+    }
 }
 
 fn direction(text: &str) -> Result<Unit<Vector3<f64>>, Failure> {
@@ -108,6 +127,7 @@ struct Answer {
     position: [f64; 3],
     rotation: [[f64; 3]; 3],
     starts: usize,
+    conditions: usize,
     #[serde(skip)]
     orientation_counts: bool,
     #[serde(skip)]
@@ -117,7 +137,7 @@ struct Answer {
 }
 
 impl Answer {
-    fn new(arguments: &InverseArguments, chain: &Chain, solution: &Solution) -> Self {
+    fn new(arguments: &InverseArguments, chain: &Chain, solution: &Solution, conditions: usize) -> Self {
         let rotation = solution.tip.rotation.matrix();
         let q: Vec<String> = solution.q.iter().map(|&q| or_zero(q).to_string()).collect();
         Self {
@@ -130,7 +150,8 @@ impl Answer {
             position: solution.tip.translation.vector.into(),
             rotation: std::array::from_fn(|row| std::array::from_fn(|column| rotation[(row, column)])),
             starts: solution.starts,
-            orientation_counts: arguments.orientation.is_some() || arguments.axis.is_some(),
+            conditions,
+            orientation_counts: conditions > 3,
             limits: chain.position_limits().map(|(lower, upper)| [lower, upper]).collect(),
             again: again(&arguments.chain, &q.join(",")),
         }
@@ -153,6 +174,19 @@ fn again(chain: &ChainArguments, q: &str) -> String {
     command + &format!(" --q={q}")
 }
 
+impl Answer {
+    /// The tasks with fewer conditions.
+    fn masks(&self) -> String {
+        let axis = "--task axis leaves the turn about the tip's z free (5 conditions)";
+        let position = "--task position the whole orientation (3)";
+        match self.conditions {
+            6 => format!("{axis}, {position}"),
+            5 => position.to_owned(),
+            _ => "--task position-xy leaves z free (2)".to_owned(),
+        }
+    }
+}
+
 impl Show for Answer {
     fn text(&self) -> String {
         let mut text = String::new();
@@ -170,6 +204,15 @@ impl Show for Answer {
                 self.starts
             )
         };
+        let joints = self.joints.len();
+        if !self.found && joints < self.conditions {
+            let _ = writeln!(
+                text,
+                "{joints} joints can not meet {} conditions in general; ask for less: {}.",
+                self.conditions,
+                self.masks()
+            );
+        }
         let mut table = Table::new(["joint", "position", "lower", "upper"]);
         let limit = |value: f64| if value.is_finite() { short(value) } else { "-".to_owned() };
         for ((joint, q), [lower, upper]) in self.joints.iter().zip(&self.q).zip(&self.limits) {

@@ -28,6 +28,8 @@ struct Document<'a> {
     start: &'static str,
     steps: usize,
     samples: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lead: Option<usize>,
     noise: Option<Noise>,
     arms: Vec<Arm<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -73,10 +75,25 @@ struct Arm<'a> {
     rms_error_steady: f64,
     max_position_error: f64,
     max_orientation_error: f64,
-    smallest_singular_value: f64,
+    /// At the sample where its bound was least; null where only the bound is known.
+    smallest_singular_value: Option<f64>,
+    /// No sample is below this.
+    smallest_singular_value_at_least: f64,
     damped_samples: usize,
     limits: Limits<'a>,
     start_pose: Option<StartPose<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    convergence: Option<Convergence>,
+}
+
+/// How the feedback brought an arm in that started off its path; what never happens is null.
+#[derive(Serialize)]
+struct Convergence {
+    initial_error: f64,
+    tolerance: f64,
+    reached: Option<f64>,
+    factor: f64,
+    predicted: Option<f64>,
 }
 
 /// The initial joint positions, where they were solved for, and how far they leave the tip from where it was asked to be.
@@ -112,6 +129,7 @@ impl<'a> Document<'a> {
             start: plan.start,
             steps: plan.steps,
             samples: plan.samples(),
+            lead: Some(plan.lead).filter(|&lead| lead > 0),
             noise: plan.noise.as_ref().map(Noise::of),
             arms: plan.arms.iter().map(Arm::of).collect(),
             tasks: plan.tasks.iter().map(Task::of).collect(),
@@ -153,9 +171,17 @@ impl<'a> Arm<'a> {
             rms_error_steady: arm.rms_error_steady,
             max_position_error: arm.max_position_error,
             max_orientation_error: arm.max_orientation_error,
-            smallest_singular_value: arm.smallest_singular_value.0,
+            smallest_singular_value: arm.worst_singular_value,
+            smallest_singular_value_at_least: arm.smallest_singular_value.0,
             damped_samples: arm.damped_samples,
             limits: Limits { ok: arm.violations.is_empty(), violations: violations.collect() },
+            convergence: arm.convergence.as_ref().map(|convergence| Convergence {
+                initial_error: convergence.initial_error,
+                tolerance: convergence.tolerance,
+                reached: convergence.reached,
+                factor: convergence.factor,
+                predicted: Some(convergence.predicted).filter(|t| t.is_finite()),
+            }),
             start_pose: arm.start_distance.map(|distance| StartPose { q0: arm.position(0), distance }),
         }
     }

@@ -43,6 +43,7 @@ impl PlanFormat for PlanText {
             writeln!(out, "\nroot mean square of the error in the second half: {}", mean_squares(plan))?;
         }
         plan.arms.iter().try_for_each(|arm| start(arm, out))?;
+        approach_of(plan).iter().try_for_each(|sentence| writeln!(out, "\n{sentence}"))?;
         writeln!(out, "\ntask error over time, logarithmic:")?;
         let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
         for arm in &plan.arms {
@@ -72,6 +73,41 @@ pub(super) fn disturbed_by(noise: &Noise) -> String {
 pub(super) fn mean_squares(plan: &Plan) -> String {
     let figures = plan.arms.iter().map(|arm| format!("{} {:.2e}", arm.name, arm.rms_error_steady));
     figures.collect::<Vec<_>>().join(", ")
+}
+
+/// Says how the arms came to their paths.
+pub(super) fn approach_of(plan: &Plan) -> Vec<String> {
+    let mut said = Vec::new();
+    if plan.lead > 0 {
+        let time = short(plan.lead as f64 * plan.sigma);
+        said.push(format!(
+            "the joints are led to where the paths begin in the first {time} s ({} steps)",
+            plan.lead
+        ));
+    }
+    for arm in &plan.arms {
+        let Some(convergence) = &arm.convergence else { continue };
+        let came = match convergence.reached {
+            Some(t) => format!(
+                "within {:.1e} from t = {} s on; errors count from there",
+                convergence.tolerance,
+                short(t)
+            ),
+            None => format!("never to stay within {:.1e}", convergence.tolerance),
+        };
+        let predicted = if convergence.predicted.is_finite() {
+            format!("{} s after the start", short(convergence.predicted))
+        } else {
+            "never".to_owned()
+        };
+        said.push(format!(
+            "{} started {:.2e} off its path and came {came} (by r(h)^n with r(h) = {}: {predicted})",
+            arm.name,
+            convergence.initial_error,
+            short(convergence.factor)
+        ));
+    }
+    said
 }
 
 /// Where an arm begins, if that was solved for.

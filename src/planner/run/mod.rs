@@ -1,5 +1,7 @@
 //! Runs that advance together by one stepper: what is recorded of them, what disturbs them, and what stops them.
 
+mod approach;
+mod convergence;
 mod differences;
 mod ensemble;
 mod field;
@@ -9,6 +11,7 @@ mod reachability;
 mod record;
 mod stop_criteria;
 
+pub use convergence::Convergence;
 pub use differences::Peak;
 pub use noise::Noise;
 pub use plan::{ArmPlan, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};

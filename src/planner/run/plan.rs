@@ -1,3 +1,4 @@
+use super::convergence::Convergence;
 use super::noise::Noise;
 use crate::planner::system::Violation;
 use nalgebra::Vector6;
@@ -96,12 +97,18 @@ pub struct ArmPlan {
     pub max_position_error: f64,
     /// The largest orientation error \[rad\].
     pub max_orientation_error: f64,
-    /// The smallest singular value of the task Jacobian met (a lower bound of it away from singularities), and when \[s\].
+    /// A lower bound of the smallest singular value of the task Jacobian met, at most a factor `sqrt(rows)` below it, and the
+    /// time \[s\] of the sample where that bound was least. Of arms that are resolved together it is that of all of them.
     pub smallest_singular_value: (f64, f64),
+    /// The smallest singular value of the task Jacobian at that sample, which no other sample is below by more than the bound
+    /// says; `None` where the run stopped there, or where arms are resolved together.
+    pub worst_singular_value: Option<f64>,
     /// On how many samples the law damped its answer.
     pub damped_samples: usize,
     /// Joint limits crossed, each where it was worst.
     pub violations: Vec<Violation>,
+    /// How the feedback brought the arm in, where it was allowed to start off its path.
+    pub convergence: Option<Convergence>,
     /// Where the initial joint positions were solved for: the distance [m, rad] of the tip from where it was asked to be.
     pub start_distance: Option<f64>,
 }
@@ -146,6 +153,8 @@ pub struct Plan {
     pub start: &'static str,
     /// Steps of the whole plan; a run that stopped has fewer.
     pub steps: usize,
+    /// How many of them lead arms to their paths before the run.
+    pub lead: usize,
     /// The noise that was injected into the loop, if there was any.
     pub noise: Option<Noise>,
     /// What each arm did.
@@ -172,6 +181,12 @@ impl Plan {
     /// Whether the run reached its end.
     pub fn is_completed(&self) -> bool {
         self.status == PlanStatus::Completed
+    }
+
+    /// Whether every arm that was allowed to start off its path came onto it.
+    pub fn has_converged(&self) -> bool {
+        let mut convergence = self.arms.iter().filter_map(|arm| arm.convergence.as_ref());
+        convergence.all(|convergence| convergence.reached.is_some())
     }
 
     /// Whether every joint stayed within its limits.

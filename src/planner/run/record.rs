@@ -1,5 +1,7 @@
+use super::approach::{count_from, put_lead_before, put_wait_before};
+use super::convergence::Convergence;
 use super::plan::{ArmPlan, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
-use crate::planner::system::{ArmRuntime, ArmState, Monitor, System};
+use crate::planner::system::{ArmRuntime, ArmState, Coupling, Monitor, System};
 use nalgebra::Vector6;
 
 /// What a plan says of itself.
@@ -14,6 +16,10 @@ pub(in crate::planner) struct Description {
     pub(in crate::planner) steps: usize,
     /// The largest rate [1/s] of null-space criteria that the row follows at this gap.
     pub(in crate::planner) largest_criterion_rate: f64,
+    /// How many samples lead arms to their paths before the run.
+    pub(in crate::planner) lead: usize,
+    /// The factor by which the feedback shrinks errors per step, and the steps of the row.
+    pub(in crate::planner) factor: (f64, usize),
     pub(in crate::planner) warnings: Vec<String>,
 }
 
@@ -71,18 +77,33 @@ impl Record {
         arms: &[ArmRuntime],
         systems: impl Iterator<Item = &'a System>,
     ) -> Plan {
-        let Description { formula, sigma, h, start, steps, mut warnings, largest_criterion_rate, .. } =
-            description;
+        let Description { formula, sigma, h, start, steps, mut warnings, lead, factor, .. } = description;
+        let largest_criterion_rate = description.largest_criterion_rate;
         for (plan, runtime) in self.arms.iter_mut().zip(arms) {
             take_figures(plan, &runtime.monitor);
+            plan.worst_singular_value = worst_singular_value(plan, runtime, sigma);
+            if let Some(tolerance) = runtime.arm.convergence {
+                warnings.extend(converge(plan, tolerance, factor, sigma));
+            }
             let chain = &runtime.arm.chain;
             plan.violations = runtime.monitor.violations(chain);
+            if lead > 0 {
+                put_lead_before(plan, &runtime.arm, lead, sigma);
+            }
             let limits = chain.joints().iter().map(|joint| &joint.limits);
             plan.violations.extend(plan.crossed_by_differences(limits, sigma));
             warnings.extend(damping_warning(plan, runtime.threshold));
             warnings.extend(rate_warning(&plan.name, runtime.monitor.largest_rate, largest_criterion_rate));
         }
+        self.tasks.iter_mut().for_each(|task| put_wait_before(task, lead));
+        let steps = steps + lead;
         let (status, reason) = match stop {
+            Some(stop) if lead > 0 => {
+                let begins = lead as f64 * sigma;
+                let reason =
+                    format!("{} (times of the path, which begins at {begins} s of the plan)", stop.reason);
+                (stop.status, Some(reason))
+            }
             Some(stop) => (stop.status, Some(stop.reason)),
             None => (PlanStatus::Completed, None),
         };
@@ -91,8 +112,33 @@ impl Record {
             shared.map(|system| SharedJoints { arms: system.arm_names(), joints: system.joints_in_common() });
         let (arms, tasks) = (self.arms, self.tasks);
         let shared = shared.filter(|shared| !shared.joints.is_empty()).collect();
-        Plan { status, reason, formula, sigma, h, start, steps, noise: None, arms, tasks, shared, warnings }
+        let noise = None;
+        Plan { status, reason, formula, sigma, h, start, steps, lead, noise, arms, tasks, shared, warnings }
     }
+}
+
+/// Tells apart how the arm was brought onto its path. A sentence where it was not.
+fn converge(plan: &mut ArmPlan, tolerance: f64, factor: (f64, usize), sigma: f64) -> Option<String> {
+    let convergence = Convergence::of(&plan.errors, tolerance, factor, sigma);
+    let (initial, reached) = (convergence.initial_error, convergence.reached);
+    plan.convergence = Some(convergence);
+    if let Some(reached) = reached {
+        count_from(plan, (reached / sigma).round() as usize);
+        return None;
+    }
+    Some(format!(
+        "arm `{}` started {initial:.3e} off its path and did not stay within {tolerance:.3e} of it",
+        plan.name
+    ))
+}
+
+/// The smallest singular value where its bound was least: in a step a bound is all that is worth its time.
+fn worst_singular_value(plan: &ArmPlan, runtime: &ArmRuntime, sigma: f64) -> Option<f64> {
+    let (bound, at) = plan.smallest_singular_value;
+    let n = (at / sigma).round() as usize;
+    let is_alone = runtime.coupling == Coupling::None;
+    let is_recorded = bound.is_finite() && n < plan.errors.len();
+    (is_alone && is_recorded).then(|| runtime.arm.smallest_singular_value(at, plan.position(n)))
 }
 
 /// Takes over what was watched on every sample.
@@ -155,6 +201,8 @@ fn empty_plan(runtime: &ArmRuntime, steps: usize) -> ArmPlan {
         smallest_singular_value: (f64::INFINITY, 0.0),
         damped_samples: 0,
         violations: Vec::new(),
+        worst_singular_value: None,
+        convergence: None,
         start_distance: runtime.arm.start_distance,
     }
 }

@@ -100,8 +100,10 @@ fn singular(runtime: &ArmRuntime, t: f64, reference: Option<&Reference>) -> Stop
         || "whether its task can be met there is not known".to_owned(),
         |reference| format!("the path's point {} can be reached, {reached}", place(reference)),
     );
+    // Above the threshold a bound decides.
+    let least = if runtime.is_singular() { "" } else { "at least " };
     let reason = format!(
-        "arm `{}` met a singularity and lost its path at t = {t:.6} s with a task error of {:.3e}: the smallest singular value of {of} is {:.3e}, with a threshold of {:.3e}; {verdict}",
+        "arm `{}` met a singularity and lost its path at t = {t:.6} s with a task error of {:.3e}: the smallest singular value of {of} is {least}{:.3e}, with a threshold of {:.3e}; {verdict}",
         runtime.arm.name,
         runtime.error.norm(),
         runtime.resolution.smallest_singular_value,

@@ -1,4 +1,6 @@
+use super::lead::Lead;
 use crate::law::{Law, Pseudoinverse};
+use crate::math::RowRotations;
 use crate::robot::{Chain, ChainScratch};
 use crate::task::{Motion, Task, TaskInstant, TaskKind, TaskRows, Tip, Tracking};
 use nalgebra::{IsometryMatrix3, Vector6};
@@ -14,6 +16,8 @@ pub struct Arm {
     pub(in crate::planner) law: Option<Box<dyn Law>>,
     pub(in crate::planner) start_distance: Option<f64>,
     pub(in crate::planner) machine: Option<String>,
+    pub(in crate::planner) lead: Option<Lead>,
+    pub(in crate::planner) convergence: Option<f64>,
 }
 
 impl std::fmt::Debug for Arm {
@@ -36,6 +40,8 @@ impl Arm {
             law: None,
             start_distance: None,
             machine: None,
+            lead: None,
+            convergence: None,
         }
     }
 
@@ -58,6 +64,40 @@ impl Arm {
     #[must_use]
     pub fn with_start_distance(mut self, distance: f64) -> Self {
         self.start_distance = Some(distance);
+        self
+    }
+
+    /// The same arm, led to its q0 before the run: from rest at the joint positions `from` [rad or m] to rest, in `duration`
+    /// \[s\], by a quintic of each joint. The plan holds that way before the path, which begins that much later; arms that are
+    /// planned with it wait.
+    ///
+    /// # Panics
+    /// If there is not one position for each joint.
+    #[must_use]
+    pub fn with_lead(mut self, from: Vec<f64>, duration: f64) -> Self {
+        assert_eq!(from.len(), self.chain.dof(), "a lead needs one position for each joint");
+        self.lead = Some(Lead { from, duration });
+        self
+    }
+
+    /// The same arm, led for so long \[s\]: from where it was to be led, or standing still at its q0 while others are led.
+    #[must_use]
+    pub fn led_for(mut self, duration: f64) -> Self {
+        let from = self.lead.map_or_else(|| self.q0.clone(), |lead| lead.from);
+        self.lead = Some(Lead { from, duration });
+        self
+    }
+
+    /// How long the arm is led to its path before the run \[s\].
+    pub fn lead_duration(&self) -> f64 {
+        self.lead.as_ref().map_or(0.0, |lead| lead.duration)
+    }
+
+    /// The same arm, which may start off its path: the feedback brings it in, and it counts as on its path once the norm of
+    /// its task error [m, rad] stays within `tolerance`. The transient is told apart ([`Convergence`](crate::planner::Convergence)).
+    #[must_use]
+    pub fn converging_to(mut self, tolerance: f64) -> Self {
+        self.convergence = Some(tolerance);
         self
     }
 
@@ -88,18 +128,43 @@ impl Arm {
     }
 
     /// The task error (linear \[m\]; angular \[rad\]) with the joints at `q` [rad or m] at time `t` \[s\]: zero in the
-    /// components that the task does not ask for.
+    /// components that the task does not ask for. While the arm is [led](Self::with_lead) the path waits at its beginning.
     pub fn task_error(&self, t: f64, q: &[f64], scratch: &mut ChainScratch) -> Vector6<f64> {
-        let posed = self.chain.forward(q, scratch);
+        let t = (t - self.lead_duration()).max(0.0);
         if let Some((kind, motion)) = self.task.tracking() {
-            return kind.error(&posed.pose(), &motion.at(t));
+            return kind.error(&self.chain.forward(q, scratch).pose(), &motion.at(t));
         }
+        self.task_rows(t, q, scratch).error_by_component(&*self.task)
+    }
+
+    /// What its task asks for at time `t` \[s\] of the path with the joints at `q` [rad or m].
+    fn task_rows(&self, t: f64, q: &[f64], scratch: &mut ChainScratch) -> TaskRows {
+        let posed = self.chain.forward(q, scratch);
         let mut tip = tip_of(&self.chain, (0..self.chain.dof()).collect());
         tip.pose = posed.pose();
         posed.geometric_jacobian(&mut tip.jacobian);
         let mut rows = TaskRows::zeros(self.task.rows(), self.chain.dof());
         self.task.evaluate(&TaskInstant::new(t, q, &[tip], &[0]), &mut rows);
-        rows.error_by_component(&*self.task)
+        rows
+    }
+
+    /// The smallest singular value of its task Jacobian at time `t` \[s\] of the path with the joints at `q` [rad or m].
+    pub(in crate::planner) fn smallest_singular_value(&self, t: f64, q: &[f64]) -> f64 {
+        let jacobian = self.task_rows(t, q, &mut self.chain.scratch()).jacobian;
+        let mut rotations = RowRotations::with_capacity(jacobian.nrows(), jacobian.ncols());
+        rotations.compute(jacobian.ncols(), |row, column| jacobian[(row, column)]);
+        rotations.smallest()
+    }
+
+    /// The index of the first of samples at `times` \[s\] with these [task errors](Self::task_error) that counts as on the path:
+    /// after the way there, and from when on an arm that converges stays within its tolerance. Where none does, the number of
+    /// samples.
+    pub fn on_path_from(&self, times: &[f64], errors: &[Vector6<f64>]) -> usize {
+        let rounding = 1e-9 * self.lead_duration();
+        let led = times.iter().take_while(|t| **t < self.lead_duration() - rounding).count();
+        let Some(tolerance) = self.convergence else { return led };
+        let off = errors.iter().rposition(|error| !(error.norm() <= tolerance)).map_or(0, |last| last + 1);
+        led.max(off)
     }
 
     /// Where the joint of that name starts [rad or m], if it is one of its own.

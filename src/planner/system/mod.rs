@@ -9,6 +9,7 @@ mod disturbance;
 mod joint_index;
 mod joint_sets;
 mod joint_system;
+mod lead;
 mod limits;
 mod monitor;
 mod resolved;

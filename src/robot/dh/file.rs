@@ -8,8 +8,21 @@ use crate::robot::{Diagnostic, JointKind, Limits, degrees_suspected, millimetres
 
 const KEYS: [&str; 9] =
     ["name", "base", "convention", "joint", "planar", "limits", "velocity", "acceleration", "jerk"];
-const ROW_KEYS: [&str; 11] =
-    ["name", "link", "kind", "a", "alpha", "d", "theta", "limits", "velocity", "acceleration", "jerk"];
+const ROW_KEYS: [&str; 13] = [
+    "name",
+    "link",
+    "kind",
+    "a",
+    "alpha",
+    "d",
+    "theta",
+    "offset",
+    "flip",
+    "limits",
+    "velocity",
+    "acceleration",
+    "jerk",
+];
 const KINDS: [JointKind; 4] =
     [JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic, JointKind::Fixed];
 
@@ -19,7 +32,8 @@ impl DhTable {
     /// At the top: `name` of the robot (empty unless given), `base` (the first link, default `base`), `convention` (`"standard"` or
     /// `"modified"`), and the rows as `[[joint]]`, each with `a`, `alpha`, `d`, `theta` (0 unless given; angles in rad or
     /// as expressions in pi), `kind` (`"revolute"`, `"continuous"`, `"prismatic"`, `"fixed"`; revolute with `limits`,
-    /// continuous without, unless given), `limits = [lower, upper]`, `velocity`, `acceleration`, `jerk`, `name` of the joint (default `joint1`,
+    /// continuous without, unless given), `offset` (added to `theta`, or to `d` of a prismatic row) and `flip` (the joint counts
+    /// against z) as in Corke's Robotics Toolbox, `limits = [lower, upper]`, `velocity`, `acceleration`, `jerk`, `name` of the joint (default `joint1`,
     /// `joint2`, ...) and of the `link` with the row's frame (default `link1`, ..., and `tip` for the last). Or, for an arm
     /// in the plane, `planar = [1.0, 0.8]` with the lengths of its links, and the limits of all joints.
     ///
@@ -191,7 +205,9 @@ fn row(table: &Entries<'_, '_>, index: usize, count: usize, report: &mut Report<
     let link = own("link", report, default);
     let kind = kind(table, report)?;
     let [a, alpha, d, theta] = ["a", "alpha", "d", "theta"].map(|key| table.number(key, report));
-    let row = DhRow { joint, link, kind, a, alpha, d, theta, limits: limits(table, report) };
+    let (offset, flip) = (table.number("offset", report), table.flag("flip", report).unwrap_or(false));
+    let (d, theta) = if kind.is_rotation() { (d, theta + offset) } else { (d + offset, theta) };
+    let row = DhRow { joint, link, kind, a, alpha, d, theta, flip, limits: limits(table, report) };
     if let Some((key, problem)) = row.problem() {
         report.error(table.place(key), format!("joint {}: {problem}", quote(&row.joint)));
     }

@@ -39,6 +39,8 @@ pub struct DhRow {
     pub d: f64,
     /// Angle about z \[rad\].
     pub theta: f64,
+    /// Whether the joint counts against z: `-q` is added then.
+    pub flip: bool,
     /// Limits of the joint position `q`; infinite where they are not known.
     pub limits: Limits,
 }
@@ -137,6 +139,7 @@ impl DhTable {
             alpha: 0.0,
             d: 0.0,
             theta: 0.0,
+            flip: false,
             limits: Limits::UNLIMITED,
         };
         let before = std::iter::once(0.0).chain(lengths.iter().copied());
@@ -336,7 +339,11 @@ impl Serial {
             parent: child - 1,
             child,
             origin,
-            axis: if row.kind == JointKind::Fixed { Vector3::x() } else { Vector3::z() },
+            axis: match row.kind {
+                JointKind::Fixed => Vector3::x(),
+                _ if row.flip => -Vector3::z(),
+                _ => Vector3::z(),
+            },
             limits,
             mimic: None,
             follows: None,

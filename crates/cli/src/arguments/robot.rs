@@ -36,6 +36,7 @@ Examples:
   kinstep robot ik panda --base panda_link0 --tip panda_hand_tcp --position 0.5,0.1,0.3 --orientation pi,0,0
   kinstep robot ik ur5e --base base_link --tip tool0 --position 0.4,0.2,0.3 --axis 0,0,-1 --json
   kinstep robot ik planar4 --base base --tip tip --position 2,1 --q0 0.1,0.2,0.3,0.4
+  kinstep robot ik my_5_axis.urdf --base base --tip tip --position 0.3,0,0.2 --orientation pi,0,0 --task axis
 
 Without --q0 the answer nearest to the middle of the limits is taken. The same arguments always give the same answer.")]
     Ik(InverseArguments),
@@ -137,6 +138,19 @@ pub(crate) struct KinematicsArguments {
     pub(crate) q: Option<String>,
 }
 
+/// What of a pose counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum InverseTask {
+    /// x and y
+    PositionXy,
+    /// The position
+    Position,
+    /// The position and where the tip's z axis points
+    Axis,
+    /// Position and orientation
+    Pose,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct InverseArguments {
     #[command(flatten)]
@@ -153,6 +167,11 @@ pub(crate) struct InverseArguments {
     /// Where its z axis should point, in the base's axes; the turn about it is free
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, conflicts_with = "orientation")]
     pub(crate) axis: Option<String>,
+
+    /// What of it counts; `position` of a pose leaves the orientation free, `axis` the turn about the tip's z. Default: all
+    /// that is given
+    #[arg(long, value_enum, value_name = "TASK")]
+    pub(crate) task: Option<InverseTask>,
 
     /// Joint positions that the answer should be near, in path order in rad or m
     #[arg(long, value_name = "Q,...", allow_hyphen_values = true)]

@@ -146,3 +146,40 @@ fn a_file_of_limits_goes_over_the_robots_own() {
         refused.err
     );
 }
+
+#[test]
+fn a_start_off_the_path_is_refused_with_both_remedies_and_each_works() {
+    let scenario = |approach: &str, center: &str| {
+        format!(
+            "sigma = 0.01\nduration = 2.0\n[[arm]]\nname = \"left\"\nrobot = \"planar4\"\nbase = \"base\"\ntip = \"tip\"\n\
+             task = \"position-xy\"\nq0 = [\"pi/10\", 0.3, 0.3, 0.4]\n{approach}\n\
+             path = {{ kind = \"circle\", radius = 0.2, center = {center} }}\n"
+        )
+    };
+    let (near, far) = ("[2.5, 2.7]", "[2.0, 2.2]");
+    let reach = scenario("approach = \"reach\"", far);
+    let converge = scenario("approach = \"converge\"\napproach_tolerance = 1e-4", near);
+    let too_far = scenario("approach = \"converge\"", far);
+    let files = [
+        ("no.toml", scenario("", near)),
+        ("reach.toml", reach),
+        ("converge.toml", converge),
+        ("far.toml", too_far),
+    ];
+    let desk = Desk::new(&files.each_ref().map(|(name, text)| (*name, text.as_str())));
+    let refused = desk.run(&["plan", "no.toml"]).expect(2);
+    assert!(
+        refused.err.contains("approach = \"reach\"") && refused.err.contains("approach = \"converge\""),
+        "{}",
+        refused.err
+    );
+    assert!(desk.run(&["plan", "far.toml"]).expect(2).err.contains("approach = \"reach\""));
+    for name in ["reach", "converge"] {
+        let file = format!("{name}.toml");
+        let plan = desk.run(&["plan", &file, "--out", name, "--json"]).expect(0).json();
+        assert!(plan["arms"][0]["max_error"].as_f64().unwrap() < 1e-4, "{plan}");
+        assert_eq!(plan["lead"].is_u64(), name == "reach");
+        assert_eq!(plan["arms"][0]["convergence"]["reached"].is_f64(), name == "converge");
+        desk.run(&["plot", name, "--out", &format!("{name}-pictures")]).expect(0);
+    }
+}

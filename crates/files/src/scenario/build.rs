@@ -5,6 +5,7 @@ use std::path::Path;
 
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Unit, Vector3};
 
+use super::approach::{Approach, TOLERANCE, reach};
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
 use super::kinds::Kinds;
@@ -180,13 +181,24 @@ impl Scenario {
         let motion = spec.path.motion_with(kinds, &start, self.duration.value());
         let unknown =
             || ScenarioError::at(ErrorKind::Scenario, &at.key("path").key("kind"), "there is no such curve");
+        let motion = motion.ok_or_else(unknown)?;
+        let way = match spec.approach {
+            Some(Approach::Reach) => reach(&at, spec, (&chain, &held), &motion, &q0)?,
+            Some(Approach::Converge) | None => None,
+        };
+        let (q0, lead) = way.map_or((q0.clone(), None), |way| (way.q0, Some((q0, way.duration))));
         let law = self.law.law(kinds, &q0)?;
-        let arm =
-            Arm::new(spec.name.clone(), chain, q0, spec.task, motion.ok_or_else(unknown)?).with_law(law);
-        Ok(match distance {
-            Some(distance) => arm.with_start_distance(distance),
-            None => arm,
-        })
+        let mut arm = Arm::new(spec.name.clone(), chain, q0, spec.task, motion).with_law(law);
+        if let Some(distance) = distance {
+            arm = arm.with_start_distance(distance);
+        }
+        if let Some((from, duration)) = lead {
+            arm = arm.with_lead(from, duration);
+        }
+        if spec.approach == Some(Approach::Converge) {
+            arm = arm.converging_to(spec.approach_tolerance.as_ref().map_or(TOLERANCE, Real::value));
+        }
+        Ok(arm)
     }
 
     /// Puts arms that are parts of one machine onto it: arms of the same robot with their bases at the same place. At
@@ -204,7 +216,8 @@ impl Scenario {
         // A machine is called after the first of its arms.
         let machine = |own: &ArmSpec| self.arm.iter().find(|other| other.is_same_machine(own));
         let placed = arms.into_iter().zip(self.arm.iter().map(machine));
-        Ok(placed.map(|(arm, first)| arm.on_machine(first.map_or("", |first| first.name.as_str()))).collect())
+        let arms = placed.map(|(arm, first)| arm.on_machine(first.map_or("", |first| first.name.as_str())));
+        Ok(self.led_together(arms.collect()))
     }
 
     /// Returns the planner's refusal with the key that it is about.
@@ -223,8 +236,14 @@ impl Scenario {
                 return refused_positions(&KeyPath::dotted("arm").key(arm), problem);
             }
             PlannerError::PathStart { arm, .. } => {
-                let remedy = "; `start_pose = \"path\"` has q0 solved for";
+                let remedy = "; `start_pose = \"path\"` has q0 solved for, `approach = \"reach\"` plans a way to the path, and with \
+                              `approach = \"converge\"` the feedback brings the arm in";
                 let at = of_arm(arm, "path").key("center");
+                return ScenarioError::at(ErrorKind::Scenario, &at, format!("{error}{remedy}"));
+            }
+            PlannerError::TooFar { arm, .. } => {
+                let remedy = " (`approach = \"reach\"`)";
+                let at = of_arm(arm, "approach");
                 return ScenarioError::at(ErrorKind::Scenario, &at, format!("{error}{remedy}"));
             }
             PlannerError::SharedStart { other, .. } => {

@@ -1,5 +1,6 @@
 //! What a scenario must satisfy before anything is looked up or computed.
 
+use super::approach::Approach;
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
 use super::kind_reader::{KindTable, check_length};
@@ -158,6 +159,18 @@ fn check_arm(at: &KeyPath, arm: &ArmSpec, kinds: &Kinds) -> Vec<Result<(), Scena
             .to_owned()
     })];
     found.extend(arm.q0.iter().zip(0..).map(|(value, joint)| believable(&at.key("q0").index(joint), value)));
+    if let Some(tolerance) = &arm.approach_tolerance {
+        let at = at.key("approach_tolerance");
+        found.push(require(tolerance.value() > 0.0 && tolerance.value().is_finite(), &at, || {
+            format!("{tolerance} is not a tolerance; give a positive number of m or rad")
+        }));
+        found.push(require(arm.approach == Some(Approach::Converge), &at, || {
+            "only an arm with approach = \"converge\" has a tolerance".to_owned()
+        }));
+    }
+    found.push(require(arm.approach.is_none() || arm.path.center.is_some(), &at.key("approach"), || {
+        "a path without `center` begins at the tip: there is nothing to approach".to_owned()
+    }));
     for (name, pose) in [("mount", &arm.mount), ("tool", &arm.tool)] {
         for (key, triple) in [("xyz", &pose.xyz), ("rpy", &pose.rpy)] {
             let at = at.key(name).key(key);

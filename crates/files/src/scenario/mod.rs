@@ -3,6 +3,7 @@
 //! [`ScenarioText`] is the text of a file with the positions of its keys and the values laid over it from
 //! outside; [`Scenario`] is what it says. Every refusal is a [`ScenarioError`] that names the key and its place.
 
+mod approach;
 mod build;
 mod check;
 mod criterion_spec;
@@ -32,6 +33,7 @@ mod task_spec;
 #[cfg(test)]
 mod tests;
 
+pub use approach::Approach;
 pub use criterion_spec::CriterionSpec;
 pub use document::{ScenarioText, read_text};
 pub use error::{ErrorKind, Place, ScenarioError, suggestion};

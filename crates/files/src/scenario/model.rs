@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::approach::Approach;
 use super::error::ScenarioError;
 use super::exactly::exactly;
 use super::key_path::KeyPath;
@@ -87,6 +88,13 @@ pub struct ArmSpec {
     /// Where the tip starts, in place of `q0`: joint positions are solved for, within the limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start_pose: Option<StartPose>,
+    /// How the arm comes to a path that does not begin at its tip: `converge`, `reach`. Default: not at all, such a start is
+    /// refused.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub approach: Option<Approach>,
+    /// Norm of the task error in m or rad within which an arm that converges counts as on its path. Default: 0.001.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub approach_tolerance: Option<Real>,
     /// Pose of `base` in the world. Default: the world's own.
     #[serde(default, skip_serializing_if = "Mount::is_identity")]
     pub mount: Mount,

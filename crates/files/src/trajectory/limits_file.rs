@@ -3,7 +3,6 @@
 use super::error::{Problem, TextPlace};
 use super::node::Node;
 use super::yaml::documents;
-use kinstep::math::number_text;
 use kinstep::robot::names::quote;
 use kinstep::robot::{Diagnostic, Limits, LimitsError, Robot, Severity, degrees_suspected};
 
@@ -184,7 +183,7 @@ impl JointEntry {
 }
 
 fn range(values: &[f64]) -> String {
-    values.iter().map(|&value| number_text(value)).collect::<Vec<_>>().join(" to ")
+    values.iter().map(f64::to_string).collect::<Vec<_>>().join(" to ")
 }
 
 /// Whether limits allow more than a joint's own do.
@@ -381,7 +380,7 @@ mod tests {
             "velocity limit 9 is wider than the robot's own",
             "its acceleration limit does nothing without `has_acceleration_limits: true`",
             "`has_position_limits` is false, and the robot's own position limit stays",
-            "12:61: warning: joint `panda_joint2`: a position limit of -90 looks like degrees",
+            "warning: joint `panda_joint2`: a position limit of -90 looks like degrees",
         ] {
             assert!(notes.iter().any(|note| note.contains(part)), "{part}: {notes:#?}");
         }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::PlanPage;
 use super::markup::{escaped, plain};
-use crate::plan_text::{disturbed_by, kept_together, mean_squares};
+use crate::plan_text::{approach_of, disturbed_by, kept_together, mean_squares};
 use crate::short;
 use kinstep::planner::{ArmPlan, Plan, PlanStatus};
 
@@ -34,6 +34,9 @@ pub(super) fn lead(page: &PlanPage<'_>) -> String {
     }
     for task in &plan.tasks {
         let _ = write!(html, "<p>{}.</p>", escaped(&kept_together(task)));
+    }
+    for sentence in approach_of(plan) {
+        let _ = write!(html, "<p>{}.</p>", escaped(&sentence));
     }
     if let Some(noise) = &plan.noise {
         let (noise, errors) = (disturbed_by(noise), mean_squares(plan));
@@ -182,7 +185,8 @@ fn number_row(plan: &Plan, arm: &ArmPlan) -> String {
     let errors = [arm.max_error, arm.max_error_steady, arm.max_position_error, arm.max_orientation_error];
     let (value, at) = arm.smallest_singular_value;
     let singular = if value.is_finite() && plan.samples() > 0 {
-        format!("{} {}", plain(value), moment(at, "the worst conditioned posture"))
+        let shown = arm.worst_singular_value.map_or_else(|| format!("at least {}", plain(value)), plain);
+        format!("{shown} {}", moment(at, "the worst conditioned posture"))
     } else {
         "\u{2013}".to_owned()
     };

@@ -179,6 +179,8 @@ impl OrderCase {
             start_pose: None,
             mount: scenario::Mount::default(),
             tool: scenario::Mount::default(),
+            approach: None,
+            approach_tolerance: None,
             calibration: None,
             limits: None,
             lock: BTreeMap::new(),

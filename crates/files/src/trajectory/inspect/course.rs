@@ -22,12 +22,14 @@ pub struct Course {
 }
 
 impl Course {
-    /// Returns the part of a path of `duration` \[s\] that the samples cover. Stamps that do not begin at zero are those of the
+    /// Returns the part of a path of `duration` \[s\], and of the way to it where there is one, that the samples cover. Stamps that do not begin at zero are those of the
     /// path, or else of a clock that was started elsewhere: whichever brings the arms nearer to their paths.
     ///
     /// Every arm comes with the one whose path it should follow, and has the same joints in the same order.
     pub fn of(times: &[f64], arms: &[(ArmTrajectory, &Arm)], duration: f64) -> Self {
         let (first, last) = (times[0], times[times.len() - 1]);
+        let way = arms.iter().map(|(_, path)| path.lead_duration()).fold(0.0, f64::max);
+        let duration = way + duration;
         let at = |origin: f64| Self { origin, covered: [first - origin, last - origin], duration };
         let (own, moved) = (at(0.0), at(first));
         let worst = |course: Self| -> f64 {
@@ -53,7 +55,8 @@ impl Course {
     }
 
     /// Returns the worst norm of the task error (m and rad together) while the path lasts, and its time stamp \[s\]: at samples,
-    /// and between those that are further apart than a thousandth of the path.
+    /// and between those that are further apart than a thousandth of the path. The way to the path is not the path; of an arm
+    /// that never comes there all counts.
     pub fn worst_error(
         &self,
         arm: &ArmTrajectory,
@@ -61,18 +64,20 @@ impl Course {
         times: &[f64],
         interpolation: Interpolation,
     ) -> Met {
-        let joints = 0..arm.joints.len();
-        let knots: Vec<Knots<'_>> = joints.map(|joint| Knots::of(arm, joint, times)).collect();
+        let knots: Vec<Knots<'_>> = (0..arm.joints.len()).map(|joint| Knots::of(arm, joint, times)).collect();
+        let own_times: Vec<f64> = times.iter().map(|t| t - self.origin).collect();
+        let errors = arm.task_errors(path, &own_times);
+        let first =
+            Some(path.on_path_from(&own_times, &errors)).filter(|&first| first < times.len()).unwrap_or(0);
         let mut scratch = path.chain().scratch();
-        let mut worst = Met { value: 0.0, t: times[0] };
-        let mut look = |t: f64, q: &[f64]| {
-            let error = path.task_error(t - self.origin, q, &mut scratch).norm();
+        let mut worst = Met { value: 0.0, t: times[first] };
+        let mut take = |error: f64, t: f64| {
             if self.lasts(t) && !(error <= worst.value) {
                 worst = Met { value: error, t };
             }
         };
-        for n in 0..times.len() {
-            look(times[n], arm.position(n));
+        for n in first..times.len() {
+            take(errors[n].norm(), times[n]);
             let gap = if n + 1 < times.len() { times[n + 1] - times[n] } else { 0.0 };
             let parts = (gap * PARTS / self.duration).ceil().min(PARTS);
             if parts > 1.0 {
@@ -81,7 +86,8 @@ impl Course {
                 for part in 1..parts as usize {
                     let s = part as f64 / parts;
                     let q: Vec<f64> = segments.iter().map(|segment| segment.value(s)).collect();
-                    look(segments[0].time(s), &q);
+                    let t = segments[0].time(s);
+                    take(path.task_error(t - self.origin, &q, &mut scratch).norm(), t);
                 }
             }
         }
