@@ -179,11 +179,11 @@ pub(crate) struct ReadingArguments {
     /// Take these columns of a table and leave out all others: COLUMN=JOINT, COLUMN=JOINT.velocity, COLUMN=t, or a pattern with
     /// one * that stands for the joints' names or counts them in the robot's order, as in 'actual_q_*' or
     /// 'actual_qd_*=velocity'. May be given again
-    #[arg(long, value_name = "COLUMNS[=TARGET]")]
+    #[arg(long, value_name = "COLUMNS[=TARGET]", allow_hyphen_values = true)]
     pub(crate) map: Vec<ColumnMap>,
 
     /// What the names of joints begin with in the file and not in the robot
-    #[arg(long, value_name = "TEXT")]
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     pub(crate) prefix: Option<String>,
 
     /// The unit of the times: s, ms, us or ns; seconds, unless they are dates that can not be

@@ -308,7 +308,12 @@ fn joints_of_no_arm_and_arms_without_their_joints_are_refused() {
 fn files_of_others_are_recognised_and_options_say_what_can_not_be() {
     let prefixed = "t;left_j1;left_j2;left_j3;left_j4\n0;0,1;0;0;0\n0,5;0,1;0;0;0\n";
     let counted = "timestamp q_0 q_1 q_2 q_3 i_0\n0 10 0 0 0 x\n1 10 0 0 0 x\n";
-    let desk = Desk::new(&[("a.csv", prefixed), ("b.csv", counted), ("c.csv", "t,j1\n0,0\n9000000,0\n")]);
+    let desk = Desk::new(&[
+        ("a.csv", prefixed),
+        ("b.csv", counted),
+        ("c.csv", "t,j1\n0,0\n9000000,0\n"),
+        ("d.csv", "t,- j1 deg\n0,1\n1,1\n"),
+    ]);
     let robot = ["--robot", "planar4"];
     let run = desk.run(&[&["check", "a.csv"], &robot[..]].concat()).expect(3);
     assert!(
@@ -321,6 +326,7 @@ fn files_of_others_are_recognised_and_options_say_what_can_not_be() {
     let checked =
         desk.run(&[&["check", "a.csv", "--prefix", "left_", "--json"], &robot[..]].concat()).expect(0).json();
     assert_eq!(checked["notes"].as_array().unwrap().len(), 2, "{checked}");
+    desk.run(&[&["check", "d.csv", "--map", "- * deg"], &robot[..]].concat()).expect(0);
     let map = ["--map", "q_*", "--degrees"];
     let run = desk.run(&[&["check", "b.csv", "--quiet"], &map[..], &robot[..]].concat()).expect(0);
     assert_eq!(run.err, "");

@@ -35,21 +35,23 @@ impl Decimal {
         let (mantissa, power) = plain.split_at(end);
         let point = mantissa.iter().position(|&byte| byte == b'.').unwrap_or(end);
         let (whole, fraction) = (&mantissa[..point], mantissa.get(point + 1..).unwrap_or_default());
+        // The shortest form has two dozen characters.
+        let count = |length: usize| i32::from(length as u8);
         let leading = |digits: &[u8]| digits.iter().take_while(|&&digit| digit == b'0').count();
         let mut digits = [b'0'; SIGNIFICANT];
         let mut copy = |from: usize, part: &[u8]| -> usize {
-            let count = part.len().min(SIGNIFICANT - from);
-            digits[from..from + count].copy_from_slice(&part[..count]);
-            from + count
+            let length = part.len().min(SIGNIFICANT - from);
+            digits[from..from + length].copy_from_slice(&part[..length]);
+            from + length
         };
         let first = if whole == b"0" {
             let zeros = leading(fraction);
             copy(0, &fraction[zeros..]);
-            if zeros == fraction.len() { 0 } else { -1 - zeros as i32 }
+            if zeros == fraction.len() { 0 } else { -1 - count(zeros) }
         } else {
-            let count = copy(0, whole);
-            copy(count, fraction);
-            whole.len() as i32 - 1
+            let written = copy(0, whole);
+            copy(written, fraction);
+            count(whole.len()) - 1
         };
         let is_negative = power.get(1) == Some(&b'-');
         let size = power.iter().filter(|byte| byte.is_ascii_digit());

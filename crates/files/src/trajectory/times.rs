@@ -114,10 +114,10 @@ impl Times {
     /// Adds a time as it is written.
     pub(super) fn push(&mut self, text: &str) -> Result<(), String> {
         let ticks = if self.seconds.is_empty() || self.exact.is_some() { ticks(text) } else { None };
-        if self.seconds.is_empty() {
-            if let Some(ticks) = ticks {
-                self.begin(ticks);
-            }
+        if self.seconds.is_empty()
+            && let Some(ticks) = ticks
+        {
+            self.begin(ticks);
         }
         let seconds = match (self.exact, ticks) {
             (Some(exact), Some(ticks)) => exact.seconds(ticks),
@@ -237,7 +237,7 @@ mod tests {
 
     fn read(unit: Option<TimeUnit>, texts: &[String]) -> (Vec<f64>, Vec<String>) {
         let mut times = Times::new(unit);
-        texts.iter().for_each(|text| times.push(text).unwrap());
+        texts.iter().try_for_each(|text| times.push(text)).unwrap();
         let mut notes = Vec::new();
         (times.finish(&mut notes), notes)
     }
@@ -248,7 +248,9 @@ mod tests {
             start in 200_000_000_i128..4_000_000_000, gaps in proptest::collection::vec(1_i128..1_000_000_000, 1..6),
         ) {
             let mut since = vec![0];
-            gaps.iter().for_each(|gap| since.push(since[since.len() - 1] + gap));
+            for gap in &gaps {
+                since.push(since[since.len() - 1] + gap);
+            }
             for unit in TimeUnit::ALL {
                 // A unit with nine decimals, without a point where it is nanoseconds.
                 let scale = TICKS / unit.in_second();

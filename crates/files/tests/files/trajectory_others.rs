@@ -57,11 +57,11 @@ fn columns(
     columns
 }
 
-fn table(times: (&str, Vec<String>), columns: &[(String, Vec<String>)], separator: &str) -> String {
-    let mut head = vec![times.0.to_owned()];
+fn table((name, times): (&str, &[String]), columns: &[(String, Vec<String>)], separator: &str) -> String {
+    let mut head = vec![name.to_owned()];
     head.extend(columns.iter().map(|(name, _)| name.clone()));
     let mut text = head.join(separator) + "\n";
-    for (row, time) in times.1.iter().enumerate() {
+    for (row, time) in times.iter().enumerate() {
         let mut line = vec![time.clone()];
         line.extend(columns.iter().map(|(_, texts)| texts[row].clone()));
         text += &(line.join(separator) + "\n");
@@ -133,10 +133,10 @@ fn command(trajectory: &Trajectory, span: &dyn Fn(u64) -> String, is_block: bool
             } else {
                 format!(" [{}]", list(values))
             };
-            let _ = write!(text, "{dash} {key}:{values}\n");
+            let _ = writeln!(text, "{dash} {key}:{values}");
             dash = " ";
         }
-        let _ = write!(text, "  effort: []\n  time_from_start: {}\n", span(ms));
+        let _ = writeln!(text, "  effort: []\n  time_from_start: {}", span(ms));
     }
     text
 }
@@ -155,34 +155,34 @@ proptest! {
 
         let own = columns(&trajectory, |_, joint, word| if word == "position" { joint.to_owned() } else { format!("{joint}.{word}") });
         for separator in [",", ";", "\t", " "] {
-            same(&table(("t", seconds.clone()), &own, separator), &ReadOptions::default())?;
+            same(&table(("t", &seconds), &own, separator), &ReadOptions::default())?;
         }
         let commas: Vec<_> =
             own.iter().map(|(name, texts)| (name.clone(), texts.iter().map(|text| text.replace('.', ",")).collect())).collect();
-        same(&table(("t", seconds.clone()), &commas, ";"), &ReadOptions::default())?;
+        same(&table(("t", &seconds), &commas, ";"), &ReadOptions::default())?;
 
         let topics = columns(&trajectory, |_, joint, word| format!("/joint_states/{joint}/{word}"));
-        let mut sparse = table(("__time", seconds.clone()), &topics, ",");
-        sparse += &format!("1e9{}\n", ",".repeat(topics.len()));
+        let mut sparse = table(("__time", &seconds), &topics, ",");
+        sparse.push_str(&["1e9", &",".repeat(topics.len()), "\n"].concat());
         same(&sparse, &ReadOptions::default())?;
 
         let counted = ReadOptions { joints: robot.clone(), ..ReadOptions::default() };
         for first in [0, 1] {
             let entries = columns(&trajectory, |place, _, word| format!("/js/{word}[{}]", place + first));
-            same(&table(("time_ms", times(&|ms| ms.to_string())), &entries, ","), &counted)?;
+            same(&table(("time_ms", &times(&|ms| ms.to_string())), &entries, ","), &counted)?;
             let rtde = columns(&trajectory, |place, _, word| format!("actual_q{}_{}", if word == "position" { "" } else { "d" }, place + first));
             let is_moving = !trajectory.arms[0].velocities.is_empty();
             let rules = if is_moving { &["actual_q_*", "actual_qd_*=velocity"][..] } else { &["actual_q_*"] };
-            same(&table(("timestamp", seconds.clone()), &rtde, " "), &ReadOptions { joints: robot.clone(), ..maps(rules) })?;
+            same(&table(("timestamp", &seconds), &rtde, " "), &ReadOptions { joints: robot.clone(), ..maps(rules) })?;
         }
         let named = columns(&trajectory, |_, joint, word| format!("left {joint} {word}"));
         let rules = ["left * position=*", "left * velocity=*.velocity"];
         let rules = if trajectory.arms[0].velocities.is_empty() { &rules[..1] } else { &rules };
         for (unit, scale) in [(TimeUnit::Nanoseconds, 1_000_000), (TimeUnit::Microseconds, 1000), (TimeUnit::Milliseconds, 1)] {
             let options = ReadOptions { time_unit: Some(unit), ..maps(rules) };
-            same(&table(("t", times(&|ms| (ms * scale).to_string())), &named, ","), &options)?;
+            same(&table(("t", &times(&|ms| (ms * scale).to_string())), &named, ","), &options)?;
             let dated = times(&|ms| ((1_700_000_000_000 + ms) * scale).to_string());
-            same(&table(("t", dated), &named, ","), &maps(rules))?;
+            same(&table(("t", &dated), &named, ","), &maps(rules))?;
         }
     }
 
@@ -218,7 +218,7 @@ proptest! {
         for span in spans {
             let message = command(&trajectory, span, is_block);
             prop_assert_eq_ok(&read("a.yaml", &message, &ReadOptions::default()), &trajectory)?;
-            let within = |indent: &str| message.lines().map(|line| format!("{indent}{line}\n")).collect::<String>();
+            let within = |indent: &str| message.lines().map(|line| [indent, line, "\n"].concat()).collect::<String>();
             let goal = format!("header:\n  stamp: {{secs: 1, nsecs: 0}}\ngoal:\n  trajectory:\n{}---\n", within("    "));
             prop_assert_eq_ok(&read("a.txt", &goal, &ReadOptions::default()), &trajectory)?;
             let display = format!(
@@ -236,7 +236,7 @@ proptest! {
             let items: String = states
                 .iter()
                 .flat_map(|state| state.lines().enumerate())
-                .map(|(n, line)| format!("{} {line}\n", if n == 0 { "-" } else { " " }))
+                .map(|(n, line)| [if n == 0 { "- " } else { "  " }, line, "\n"].concat())
                 .collect();
             prop_assert_eq_ok(&read("a.yaml", &items, &ReadOptions::default()), &trajectory)?;
         }
@@ -249,12 +249,12 @@ proptest! {
         let trajectory = plain(&trajectory);
         let span = |ms: u64| format!("{{sec: {}, nanosec: {}}}", ms / 1000, ms % 1000 * 1_000_000);
         let own = columns(&trajectory, |place, _, word| format!("{word}.{place}"));
-        let seconds = trajectory.times.iter().map(f64::to_string).collect();
+        let seconds: Vec<String> = trajectory.times.iter().map(f64::to_string).collect();
         let texts = [
             ("a.yaml", command(&trajectory, &span, false)),
             ("a.yaml", command(&trajectory, &span, true)),
             ("a.yaml", states(&trajectory, true, true).join("---\n")),
-            ("a.csv", table(("t", seconds), &own, ";")),
+            ("a.csv", table(("t", &seconds), &own, ";")),
             ("a.json", "{\"op\": \"publish\", \"msg\": {\"t\": [0, 1], \"q\": [[0], [1]]}}\n{\"t\": 1}".to_owned()),
         ];
         let options = ReadOptions { joints: joints(&trajectory.arms[0].joints), degrees: true, unwrap: true, ..ReadOptions::default() };
