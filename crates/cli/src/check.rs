@@ -11,6 +11,7 @@ use super::export;
 use super::failure::{Exit, Failure};
 use super::output::{Output, Show};
 use super::share_out::{Shares, share_out};
+use super::stopped::Stopped;
 use kinstep::planner::Arm;
 use kinstep::robot::{Limits, Robot};
 use kinstep_files::scenario::{ScenarioText, TaskSpec};
@@ -119,7 +120,12 @@ pub(super) fn run(arguments: &CheckArguments, output: &mut Output) -> Result<Exi
         let got = arguments.max_error;
         return Err(Failure::usage(format!("--max-error: expected a length above 0, got {got}")));
     }
-    let checked = Against::of(arguments)?.checked(arguments.max_error);
+    let stopped = Stopped::check(&arguments.trajectory)?;
+    let mut checked = Against::of(arguments)?.checked(arguments.max_error);
+    if let Some(stopped) = stopped {
+        checked.ok = false;
+        checked.failures.insert(0, stopped.sentence);
+    }
     output.show(&checked)?;
     Ok(if checked.ok { Exit::Done } else { Exit::CheckFailed })
 }

@@ -9,6 +9,8 @@ use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use super::formats::{self, Exports};
 use super::output::{Output, Show};
+use super::stopped::Stopped;
+use kinstep::robot::names::printable;
 use kinstep::robot::{Robot, UrdfOptions};
 use kinstep::task::TaskKind;
 use kinstep_files::scenario::{RobotSource, ScenarioText, suggestion};
@@ -28,6 +30,9 @@ impl Show for Written {
 
 pub(super) fn run(arguments: &ExportArguments, output: &mut Output) -> Result<Exit, Failure> {
     let chosen = formats::formats(&arguments.format, &[])?;
+    if let Some(stopped) = Stopped::check(&arguments.trajectory)? {
+        output.aside(&printable(&stopped.sentence));
+    }
     let (mut trajectory, stage) = load(&arguments.trajectory, &arguments.robot)?;
     in_order_of(&mut trajectory, &stage);
     let recording = Recording { trajectory: &trajectory, stage: &stage };
