@@ -9,6 +9,8 @@ use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use super::formats::{self, Exports};
 use super::output::{Output, Show};
+use super::stopped::Stopped;
+use kinstep::robot::names::printable;
 use kinstep::robot::{Chain, Robot, UrdfOptions};
 use kinstep::task::TaskKind;
 use kinstep_files::scenario::{RobotSource, ScenarioText, suggestion};
@@ -36,6 +38,9 @@ impl Show for Exported {
 
 pub(super) fn run(arguments: &ExportArguments, output: &mut Output) -> Result<Exit, Failure> {
     let chosen = formats::formats(&arguments.format, &[])?;
+    if let Some(stopped) = Stopped::check(&arguments.trajectory)? {
+        output.aside(&printable(&stopped.sentence));
+    }
     let Loaded { mut trajectory, stage, notes, joints } =
         load(&arguments.trajectory, &arguments.robot, None, &arguments.reading)?;
     let warnings = units::questions(&trajectory, &joints);

@@ -30,6 +30,7 @@ mod robot_show;
 mod schema;
 mod share_out;
 mod shell;
+mod stopped;
 mod sweep;
 
 use std::ffi::OsString;

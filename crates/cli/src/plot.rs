@@ -10,7 +10,9 @@ use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use super::order;
 use super::output::{Output, Show};
+use super::stopped::Stopped;
 use kinstep::planner::Arm;
+use kinstep::robot::names::printable;
 use kinstep_files::scenario::{ScenarioText, read_text};
 use kinstep_files::trajectory::{About, ArmTrajectory, Recording, Stage, Trajectory, TrajectoryErrorKind};
 use kinstep_report::figure::{Figure, PlanFigures, sweep_figures};
@@ -40,7 +42,12 @@ impl Show for Drawn {
 pub(super) fn run(arguments: &PlotArguments, output: &mut Output) -> Result<Exit, Failure> {
     let saved = &arguments.saved;
     let figures = match Saved::find(saved)? {
-        Saved::Plan(folder) => of_plan(arguments, &folder)?,
+        Saved::Plan(folder) => {
+            if let Some(stopped) = Stopped::check(&folder)? {
+                output.aside(&printable(&stopped.sentence));
+            }
+            of_plan(arguments, &folder)?
+        }
         Saved::Order(files) => {
             refuse_choices(arguments, "an order study")?;
             files.iter().map(|file| of_order(file)).collect::<Result<_, _>>()?

@@ -198,7 +198,7 @@ impl Show for RobotCard {
     fn text(&self) -> String {
         let mut text = format!("{}\n\n{}\n", self.heading(), self.tree());
         text.push_str(
-            "Limits in rad, rad/s, ... (revolute) or m, m/s, ... (prismatic); - where the file gives none. A link hangs from the \
+            "Limits in rad, rad/s (revolute) or m, m/s (prismatic); - where the file gives none. A link hangs from the \
              one above it, or from the one whose branch it is on.\n",
         );
         if !self.chains.is_empty() {

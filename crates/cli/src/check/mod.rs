@@ -7,6 +7,7 @@ mod verdict;
 use super::arguments::CheckArguments;
 use super::failure::{Exit, Failure};
 use super::output::Output;
+use super::stopped::Stopped;
 use against::Against;
 
 pub(super) fn run(arguments: &CheckArguments, output: &mut Output) -> Result<Exit, Failure> {
@@ -14,7 +15,12 @@ pub(super) fn run(arguments: &CheckArguments, output: &mut Output) -> Result<Exi
         let got = arguments.max_error;
         return Err(Failure::usage(format!("--max-error: expected a length above 0, got {got}")));
     }
-    let checked = Against::of(arguments, output)?.checked(arguments.max_error);
+    let stopped = Stopped::check(&arguments.trajectory)?;
+    let mut checked = Against::of(arguments, output)?.checked(arguments.max_error);
+    if let Some(stopped) = stopped {
+        checked.ok = false;
+        checked.failures.insert(0, stopped.sentence);
+    }
     for note in &checked.notes {
         output.aside(&format!("note: {note}"));
     }

@@ -183,3 +183,35 @@ fn a_start_off_the_path_is_refused_with_both_remedies_and_each_works() {
         desk.run(&["plot", name, "--out", &format!("{name}-pictures")]).expect(0);
     }
 }
+
+#[test]
+fn a_run_that_stopped_is_drawn_checked_and_exported_and_says_so() {
+    let scenario = |q0: &str, path: &str, more: &str| {
+        format!(
+            "sigma = 0.01\nduration = 4.0\nformula = \"la6-wang-guo\"\n{more}\n[[arm]]\nname = \"left\"\nrobot = \"planar4\"\n\
+             base = \"base\"\ntip = \"tip\"\ntask = \"position-xy\"\nq0 = {q0}\npath = {path}\n"
+        )
+    };
+    let bent = "[0.3, 0.4, 0.5, 0.6]";
+    let far = scenario(bent, "{ kind = \"line\", displacement = [4.0, 0.0, 0.0] }", "");
+    let wild = "allow_unstable = true\nlaw = { h = 5.0 }";
+    let diverged = scenario(bent, "{ kind = \"circle\", radius = 0.3 }", wild);
+    let singular = scenario("[0, 0, 0, 0]", "{ kind = \"circle\", radius = 0.1 }", "");
+    let desk =
+        Desk::new(&[("unreachable.toml", &far), ("diverged.toml", &diverged), ("singular.toml", &singular)]);
+    for (name, is_drawn) in [("unreachable", true), ("diverged", true), ("singular", false)] {
+        desk.run(&["plan", &format!("{name}.toml"), "--out", name, "--no-report"]).expect(5);
+        let [draws, checks] = if is_drawn { [0, 1] } else { [5, 5] };
+        let pictures = format!("{name}-pictures");
+        let exported = format!("{name}-exported");
+        let runs = [
+            desk.run(&["plot", name, "--out", &pictures]).expect(draws),
+            desk.run(&["export", name, "--format", "npz", "--out", &exported]).expect(draws),
+            desk.run(&["check", name]).expect(checks),
+        ];
+        for run in runs {
+            let said = run.out + &run.err;
+            assert!(said.contains("the run stopped after t = ") && said.contains(name), "{name}: {said}");
+        }
+    }
+}
