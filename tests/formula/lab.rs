@@ -233,8 +233,7 @@ fn what_a_search_says_it_reached_is_never_above_the_supremum_and_a_larger_bound_
                 ..Options::new(Family::LookAhead, steps, order, Objective::Range)
             };
             let outcome = search(&options, &()).expect("rows");
-            let exact =
-                outcome.rows[0].checked.analysis().feedback_range().and_then(FeedbackRange::exact);
+            let exact = outcome.rows[0].checked.analysis().feedback_range().and_then(FeedbackRange::exact);
             assert_eq!(exact.as_ref(), Some(&supremum), "{steps} steps, denominators up to {denominator}");
             let bound = rational_from_f64(outcome.bound).expect("finite");
             let hair = Rational::new(1.into(), 1_000_000_000_000_000_i64.into());
