@@ -48,9 +48,11 @@ impl fmt::Display for Hint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.slip {
             Slip::Reversed => {
-                f.write_str("the row reads as if written oldest sample first; newest first it is ")?
+                f.write_str("the row reads as if written oldest sample first; newest first it is ")?;
             }
-            Slip::Rounded => f.write_str("the numbers look like rounded fractions; with these it is ")?,
+            Slip::Rounded => {
+                f.write_str("the numbers look like rounded fractions; with these it is ")?;
+            }
             Slip::Typo { place, written, meant } => {
                 write!(f, "with {meant} in place of {written} as {place} it is ")?;
             }

@@ -4,7 +4,7 @@ use kinstep::formula::derive::{BarrierProof, DeriveError, DerivedFamily, Stencil
 use kinstep::formula::search::{
     Family, Figures, Found, Objective, Observer, Options, Outcome, SearchError, front, search,
 };
-use kinstep::formula::{FormulaTable, order_defect};
+use kinstep::formula::{FeedbackRange, FormulaTable, order_defect};
 use kinstep::math::{Rational, rational_from_f64};
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -233,7 +233,7 @@ fn what_a_search_says_it_reached_is_never_above_the_supremum_and_a_larger_bound_
                 ..Options::new(Family::LookAhead, steps, order, Objective::Range)
             };
             let outcome = search(&options, &()).expect("rows");
-            let exact = outcome.rows[0].checked.analysis().feedback_range().and_then(|range| range.exact());
+            let exact = outcome.rows[0].checked.analysis().feedback_range().and_then(FeedbackRange::exact);
             assert_eq!(exact.as_ref(), Some(&supremum), "{steps} steps, denominators up to {denominator}");
             let bound = rational_from_f64(outcome.bound).expect("finite");
             let hair = Rational::new(1.into(), 1_000_000_000_000_000_i64.into());

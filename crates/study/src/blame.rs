@@ -138,7 +138,7 @@ impl Roughness {
         }
         let at = reference.rough.or_else(|| rough_between(equations, ladder, TOLERANCE))?;
         let sentence = format!(
-            "near t = {at:.6} s the reference needed steps a millionth of the finest gap: the right-hand side, or a derivative of it, jumps or is infinite there"
+            "near t = {at:.6} s the reference needed steps a ten-thousandth of the finest gap: the right-hand side, or a derivative of it, jumps or is infinite there"
         );
         Some(Self { at, sentence })
     }

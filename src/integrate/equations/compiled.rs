@@ -49,7 +49,9 @@ impl<T: Elementary> Compiled<T> {
             Node::RealPower(base, exponent) => self.after(&[base, exponent], Operation::RealPower),
             Node::Compared(comparison, a, b) => self.after(&[a, b], Operation::Compare(*comparison)),
             Node::Call(function, arguments) => {
-                arguments.iter().for_each(|argument| self.add(argument));
+                for argument in arguments {
+                    self.add(argument);
+                }
                 Operation::Call(*function, arguments.len())
             }
         };

@@ -91,7 +91,7 @@ pub(super) fn parse(
                     "; an operator is missing before it, such as *"
                 }
                 Kind::Sign(")") => "; no parenthesis is open",
-                _ => "",
+                Kind::Sign(_) => "",
             };
             Err(reader.error(reader.next, format!("`{}` can not stand here{hint}", token.text())))
         }

@@ -69,18 +69,16 @@ fn token(characters: &[char], at: usize) -> Result<(Kind, usize), ParseError> {
         return Ok((Kind::Name(text(end)), end));
     }
     let is_here = |sign: &&&str| sign.chars().enumerate().all(|(i, c)| characters.get(at + i) == Some(&c));
-    match SIGNS.iter().find(is_here) {
-        Some(sign) => Ok((Kind::Sign(sign), at + sign.len())),
-        None => {
-            let hint = match c {
-                '=' => "; two numbers are compared with ==",
-                '[' | '{' => "; there are round parentheses only",
-                _ => "",
-            };
-            let message = format!("`{}` can not stand in an expression{hint}", c.escape_debug());
-            Err(ParseError { column: at, message })
-        }
+    if let Some(sign) = SIGNS.iter().find(is_here) {
+        return Ok((Kind::Sign(sign), at + sign.len()));
     }
+    let hint = match c {
+        '=' => "; two numbers are compared with ==",
+        '[' | '{' => "; there are round parentheses only",
+        _ => "",
+    };
+    let message = format!("`{}` can not stand in an expression{hint}", c.escape_debug());
+    Err(ParseError { column: at, message })
 }
 
 /// Whether a character goes on with the number that begins at `start`.

@@ -262,7 +262,7 @@ fn kinks_are_blamed_on_the_right_hand_side_however_they_are_written() {
         ("x' = abs(sin(3*t)) - x", "`abs(sin(3*t))` switches 2 times on the way, first between t = 1.04"),
         ("x' = max(0, t - 0.7)", "`max(0, t - 0.7)` switches once"),
         ("x' = (t > 0.7) - x", "`t > 0.7` switches once"),
-        ("x' = sqrt((t - 0.7)^2) - x", "the reference needed steps a millionth of the finest gap"),
+        ("x' = sqrt((t - 0.7)^2) - x", "the reference needed steps a ten-thousandth of the finest gap"),
     ] {
         let row = only(&problem(3.0, &[equation], &["x = 1"], &[]));
         assert!(
