@@ -201,7 +201,7 @@ impl Card {
         let problems = checked.contradictions().iter().map(ToString::to_string).collect();
         let toml = finished.then(|| checked.to_toml());
         let remarks = checked.row().hints().iter().take(MOST_HINTS).map(ToString::to_string).collect();
-        Self { toml, remarks, ..Self::new(checked.row(), checked.analysis(), problems) }
+        Self { remarks, toml, ..Self::new(checked.row(), checked.analysis(), problems) }
     }
 
     pub(super) fn with_remark(mut self, remark: &str) -> Self {

@@ -142,16 +142,15 @@ impl ScenarioText {
             return error;
         }
         let Some(path) = error.path.clone() else { return error };
-        match self.assignments.iter().rev().find(|(set, _)| set.contains(&path) || path.contains(set)) {
-            Some((_, assignment)) => {
-                error.message = format!("{} (--set {assignment})", error.message);
-                error
-            }
-            None => {
-                let place = self.place(&path).map(|place| within(place, error.column));
-                error.or_placed(place)
-            }
+        let mut assignments = self.assignments.iter().rev();
+        if let Some((_, assignment)) = assignments.find(|(set, _)| set.contains(&path) || path.contains(set))
+        {
+            error.message = format!("{} (--set {assignment})", error.message);
+            return error;
         }
+        let column = error.column.map(|column| column.get() as usize);
+        let place = self.place(&path).map(|place| within(place, column));
+        error.or_placed(place)
     }
 
     /// Returns where the value at `path` stands, or the nearest table around it.

@@ -62,7 +62,7 @@ pub struct ScenarioError {
     /// Where that key, or the offending text, stands.
     pub place: Option<Box<Place>>,
     /// Which character of the text at that key is meant, from 1, where it is not the first.
-    pub column: Option<usize>,
+    pub column: Option<std::num::NonZeroU32>,
     /// The file that the sentence is about as a whole, where it can not be read.
     pub file: Option<String>,
     /// What else is wrong, where more than one thing was found.

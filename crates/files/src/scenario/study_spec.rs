@@ -124,10 +124,8 @@ impl ProblemSpec {
         Equations::parse(&text).map_err(|error| {
             let list = KeyPath::dotted("problem").key(error.list);
             let at = error.line.map_or_else(|| list.clone(), |line| list.index(line));
-            ScenarioError {
-                column: error.column,
-                ..ScenarioError::at(ErrorKind::Scenario, &at, error.message)
-            }
+            let column = error.column.and_then(|column| u32::try_from(column).ok()?.try_into().ok());
+            ScenarioError { column, ..ScenarioError::at(ErrorKind::Scenario, &at, error.message) }
         })
     }
 }
