@@ -72,7 +72,10 @@ impl fmt::Display for Table {
 /// Returns a number in at most about eight characters: plain where that is short, else with an exponent.
 pub fn short(value: f64) -> String {
     let size = value.abs();
-    if value == 0.0 || !value.is_finite() {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
         return format!("{value}");
     }
     if (1e-3..1e5).contains(&size) {

@@ -131,10 +131,10 @@ impl Against {
                     return Err(Failure::usage(message));
                 }
             };
-            let (arm, straying) = arm.with_followers(robot, &trajectory.times);
+            let interpolation = interpolation(&arm, arguments.interpolation)?;
+            let (arm, straying) = arm.with_followers(robot, &trajectory.times, interpolation);
             let limits = |joint: &String| robot.joint(joint).map_or(Limits::UNLIMITED, |joint| joint.limits);
             let limits = arm.joints.iter().map(limits).collect();
-            let interpolation = interpolation(&arm, arguments.interpolation)?;
             arms.push(arm);
             all.push(Moved { limits, straying, interpolation, path });
         }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use kinstep::planner::LimitKind;
 use kinstep_files::trajectory::{
     Course, Crossing, Disagreement, JointFigures, Jump, Met, Rest, Straying, TimeFigures,
 };
@@ -19,7 +20,8 @@ pub(super) fn moment(t: f64) -> String {
 
 pub(super) fn of_clock(clock: &TimeFigures) -> Vec<String> {
     let sentence = |(count, t)| {
-        format!("{count} samples repeat the one before in mid-motion, first at t = {} s", moment(t))
+        let samples = if count == 1 { "1 sample repeats" } else { &format!("{count} samples repeat") };
+        format!("{samples} the one before in mid-motion, first at t = {} s", moment(t))
     };
     clock.repeated.map(sentence).into_iter().collect()
 }
@@ -62,8 +64,10 @@ pub(super) fn of_arm(arm: &str, figures: &[JointFigures], times: &[f64]) -> Vec<
         let joint = format!("{arm}.{}", figures.joint);
         failures.extend(figures.crossings.iter().map(|crossing| of_crossing(&joint, crossing, times)));
         failures.extend(figures.jumps.iter().map(|jump| of_jump(&joint, *jump)));
-        let worst = figures.disagreements.iter().flatten().next();
-        failures.extend(worst.map(|worst| of_disagreement(&joint, *worst)));
+        for kind in [LimitKind::Velocity, LimitKind::Acceleration] {
+            let worst = figures.worst_disagreement(kind);
+            failures.extend(worst.map(|worst| of_disagreement(&joint, *worst)));
+        }
     }
     failures.extend(of_end(arm, figures, 0, "starts"));
     failures.extend(of_end(arm, figures, 1, "ends"));
@@ -72,6 +76,7 @@ pub(super) fn of_arm(arm: &str, figures: &[JointFigures], times: &[f64]) -> Vec<
 
 fn of_crossing(joint: &str, crossing: &Crossing, times: &[f64]) -> String {
     let Crossing { kind, first, worst, limit, .. } = crossing;
+    let excess = short((worst.value - limit).abs());
     let (kind, value, limit, first) = (kind.name(), short(worst.value), short(*limit), moment(*first));
     let Some(outside) = crossing.outside else {
         return format!(
@@ -85,7 +90,9 @@ fn of_crossing(joint: &str, crossing: &Crossing, times: &[f64]) -> String {
         _ if outside <= 1e-9 * whole => String::new(),
         lasting => format!(", for {lasting} s in all"),
     };
-    format!("{joint}: {kind} {value} crosses its limit {limit}, first at t = {first} s{lasting}{worst}")
+    format!(
+        "{joint}: {kind} {value} crosses its limit {limit} by {excess}, first at t = {first} s{lasting}{worst}"
+    )
 }
 
 fn of_jump(joint: &str, jump: Jump) -> String {
@@ -99,11 +106,11 @@ fn of_jump(joint: &str, jump: Jump) -> String {
 }
 
 fn of_disagreement(joint: &str, found: Disagreement) -> String {
-    let (size, declared, of_positions) =
-        (short(found.size()), short(found.declared), short(found.of_positions));
-    let t = moment(found.t);
+    let (size, declared, of_values) = (short(found.size()), short(found.declared), short(found.of_values));
+    let of = if found.kind == LimitKind::Velocity { "positions" } else { "velocities" };
+    let (kind, t) = (found.kind.name(), moment(found.t));
     format!(
-        "{joint}: the declared velocity differs by {size} from that of the positions at t = {t} s: {declared} and {of_positions}"
+        "{joint}: the declared {kind} differs by {size} from that of the {of} at t = {t} s: {declared} and {of_values}"
     )
 }
 

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::super::output::Show;
 use super::sentences::moment;
+use kinstep::planner::LimitKind;
 use kinstep_files::trajectory::{
     Course, Crossing, Disagreement, Interpolation, JointFigures, Met, Straying, TimeFigures,
 };
@@ -63,6 +64,7 @@ pub(super) struct ArmChecked {
     limits: LimitsChecked,
     continuous: bool,
     velocities_agree: Option<bool>,
+    accelerations_agree: Option<bool>,
     starts_at_rest: Option<bool>,
     ends_at_rest: Option<bool>,
     /// Whether joints that follow others do; of those that are in the file.
@@ -138,7 +140,7 @@ impl PathChecked {
 impl From<&JointFigures> for JointChecked {
     fn from(figures: &JointFigures) -> Self {
         let size = |met: Met| met.value.abs();
-        let worst = |found: &Vec<Disagreement>| found.first().map_or(0.0, Disagreement::size);
+        let worst = figures.worst_disagreement(LimitKind::Velocity).map_or(0.0, Disagreement::size);
         Self {
             joint: figures.joint.clone(),
             lowest: figures.positions[0].value,
@@ -148,7 +150,7 @@ impl From<&JointFigures> for JointChecked {
             mean_velocity: size(figures.mean_velocity),
             acceleration: size(figures.acceleration),
             jerk: size(figures.jerk),
-            velocity_disagreement: figures.disagreements.as_ref().map(worst),
+            velocity_disagreement: figures.disagreements.as_ref().map(|_| worst),
             jumps: figures.jumps.len(),
         }
     }
@@ -173,10 +175,7 @@ impl LimitsChecked {
         let violations: Vec<Violation> =
             figures.iter().flat_map(|figures| &figures.crossings).map(Violation::from).collect();
         let of_joint = |figures: &JointFigures| -> Vec<Undecided> {
-            let undecided = |kind: &kinstep::planner::LimitKind| Undecided {
-                joint: figures.joint.clone(),
-                kind: kind.name(),
-            };
+            let undecided = |kind: &LimitKind| Undecided { joint: figures.joint.clone(), kind: kind.name() };
             figures.undecided.iter().map(undecided).collect()
         };
         let undecided = figures.iter().flat_map(of_joint).collect();
@@ -193,10 +192,11 @@ impl ArmChecked {
         error: Option<Met>,
     ) -> Self {
         let is_continuous = |figures: &JointFigures| figures.jumps.is_empty();
-        let agrees = |figures: &JointFigures| {
-            let disagreements = figures.disagreements.as_ref()?;
-            Some(disagreements.is_empty() && is_continuous(figures))
+        let agrees = |figures: &JointFigures, kind: LimitKind| {
+            figures.disagreements.as_ref()?;
+            Some(figures.worst_disagreement(kind).is_none() && is_continuous(figures))
         };
+        let agree = |kind: LimitKind| all(figures.iter().map(|figures| agrees(figures, kind)));
         let rests = |end: usize| all(figures.iter().map(|figures| figures.rests[end].is_rest()));
         Self {
             name: name.to_owned(),
@@ -204,13 +204,35 @@ impl ArmChecked {
             joints: figures.iter().map(JointChecked::from).collect(),
             limits: LimitsChecked::of(figures),
             continuous: figures.iter().all(is_continuous),
-            velocities_agree: all(figures.iter().map(agrees)),
+            velocities_agree: agree(LimitKind::Velocity),
+            accelerations_agree: agree(LimitKind::Acceleration)
+                .filter(|_| interpolation == Interpolation::Quintic),
             starts_at_rest: rests(0),
             ends_at_rest: rests(1),
             followers_follow: straying.is_empty(),
             max_error: error.map(|error| error.value),
             max_error_at: error.map(|error| error.t),
         }
+    }
+}
+
+impl ArmChecked {
+    /// What the samples are too far apart to tell.
+    fn unknown(&self) -> Option<String> {
+        let declares = self.joints.iter().any(|joint| joint.velocity.is_some());
+        let unknown = [
+            (
+                declares && self.velocities_agree.is_none(),
+                "whether declared velocities are those of the positions",
+            ),
+            (self.starts_at_rest.is_none(), "whether it starts at rest"),
+            (self.ends_at_rest.is_none(), "whether it ends at rest"),
+        ];
+        let unknown: Vec<&str> =
+            unknown.iter().filter(|(is_unknown, _)| *is_unknown).map(|(_, what)| *what).collect();
+        let name = &self.name;
+        (!unknown.is_empty())
+            .then(|| format!("{name}: samples this far apart do not tell {}", unknown.join(", ")))
     }
 }
 
@@ -284,6 +306,7 @@ impl Checked {
                     moment(t)
                 ));
             }
+            remarks.extend(arm.unknown());
             let mut kinds: Vec<&str> = arm.limits.undecided.iter().map(|undecided| undecided.kind).collect();
             kinds.sort_unstable();
             kinds.dedup();
@@ -306,7 +329,8 @@ impl Checked {
     }
 
     fn is_whole(&self) -> bool {
-        self.unchecked.is_empty() && self.arms.iter().all(|arm| arm.limits.undecided.is_empty())
+        let is_whole = |arm: &ArmChecked| arm.limits.undecided.is_empty() && arm.unknown().is_none();
+        self.unchecked.is_empty() && self.arms.iter().all(is_whole)
     }
 }
 

@@ -4,8 +4,9 @@
 //! close, or an acceleration that no arm has.
 
 use super::interpolant::Knots;
-use super::resolution::resolution;
+use super::noise::noise;
 use super::rest::REST;
+use kinstep::planner::LimitKind;
 
 /// Samples that are as close as this \[s\] tell a velocity: arms do not stop and go twenty times in a second.
 pub(super) const CLOSE: f64 = 0.05 * (1.0 + 1e-6);
@@ -13,12 +14,10 @@ pub(super) const CLOSE: f64 = 0.05 * (1.0 + 1e-6);
 const BEYOND_ARMS: f64 = 100.0;
 /// How much faster than its neighbours a step is that is a jump.
 const JUMP_RATIO: f64 = 10.0;
-/// The smallest jump [rad or m].
-const SMALLEST_JUMP: f64 = 1e-3;
-/// The fraction of the fastest velocity by which a declared velocity may differ from that of the positions.
+/// The smallest jump [rad or m]: more than one count of a coarse encoder, `2 pi / 4096`.
+const SMALLEST_JUMP: f64 = 2e-3;
+/// The fraction of the fastest by which a declared velocity or acceleration may differ from that of the values.
 const DISAGREEMENT: f64 = 0.05;
-/// How many times the usual noise of declared velocities is allowed.
-const NOISE: f64 = 4.0;
 /// The most findings of one kind that are kept for a joint.
 const MOST: usize = 5;
 
@@ -36,28 +35,30 @@ pub struct Jump {
     pub acceleration: f64,
 }
 
-/// A declared velocity that the positions around it do not have.
+/// A declared velocity that the positions around it do not have, or a declared acceleration that the velocities do not have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disagreement {
+    /// Which of the two.
+    pub kind: LimitKind,
     /// When it is declared \[s\].
     pub t: f64,
-    /// The declared velocity [rad/s or m/s].
+    /// What is declared [rad/s or m/s, rad/s^2 or m/s^2].
     pub declared: f64,
-    /// The velocity of the parabola through three positions.
-    pub of_positions: f64,
+    /// The slope of the parabola through three positions, or velocities.
+    pub of_values: f64,
 }
 
 impl Disagreement {
     /// By how much the two differ.
     pub fn size(&self) -> f64 {
-        (self.declared - self.of_positions).abs()
+        (self.declared - self.of_values).abs()
     }
 }
 
 /// Steps that are much faster than those before and after, in the time that they take.
 pub(super) fn jumps(knots: &Knots<'_>) -> Vec<Jump> {
     let slopes: Vec<f64> = (0..knots.steps()).map(|n| knots.slope(n)).collect();
-    let rounding = resolution(&knots.positions);
+    let rounding = knots.resolution();
     let jump = |n: usize| {
         let neighbours = n.checked_sub(1).into_iter().chain((n + 1 < slopes.len()).then_some(n + 1));
         let mut acceleration = f64::INFINITY;
@@ -75,51 +76,69 @@ pub(super) fn jumps(knots: &Knots<'_>) -> Vec<Jump> {
     (0..slopes.len()).filter_map(jump).take(MOST).collect()
 }
 
-/// Returns declared velocities that the positions do not have, the worst first: those that differ from the slope of the
-/// parabola through the positions around by more than its own error, the noise of the velocities and 5 % of the fastest
-/// velocity. `None` where none of the samples is close enough to others to tell.
+/// Returns declared velocities that the positions do not have, and declared accelerations that the velocities do not have, of each
+/// kind the worst first: those that differ from the slope of the parabola around by more than its own error, the noise of both, and 5 % of
+/// the fastest. `None` where none of the samples is close enough to others to tell.
 pub(super) fn disagreements(knots: &Knots<'_>) -> Option<Vec<Disagreement>> {
-    let last = knots.steps();
     let is_close = |n: usize| knots.gap(n) <= CLOSE;
     let may_tell = |n: &usize| (n - 2..n + 2).all(is_close);
-    let places: Vec<usize> = (2..last.saturating_sub(1)).filter(may_tell).collect();
+    let places: Vec<usize> = (2..knots.steps().saturating_sub(1)).filter(may_tell).collect();
     if knots.velocities.is_empty() || places.is_empty() {
         return None;
     }
-    let slopes: Vec<f64> = (0..last).map(|n| knots.slope(n)).collect();
-    let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
-    let fastest =
-        largest(&mut knots.velocities.iter().copied()).max(largest(&mut parabolas(knots, &slopes, &places)));
-    let allowed = DISAGREEMENT * fastest + NOISE * noise(&knots.velocities) + REST;
-    let rounding = 4.0 * resolution(&knots.positions);
-    let found = places.iter().zip(parabolas(knots, &slopes, &places)).filter_map(|(&n, of_positions)| {
-        let bend = |n: usize| (slopes[n + 1] - 2.0 * slopes[n] + slopes[n - 1]).abs();
-        let error = bend(n - 1).max(bend(n)) + rounding / knots.gap(n).min(knots.gap(n - 1));
-        let found = Disagreement { t: knots.times[n], declared: knots.velocities[n], of_positions };
-        (found.size() > allowed + error).then_some(found)
-    });
-    let mut found: Vec<Disagreement> = found.collect();
-    found.sort_by(|a, b| b.size().total_cmp(&a.size()));
-    found.truncate(MOST);
+    let mut found =
+        Compared::new(LimitKind::Velocity, knots.resolution(), knots, [&knots.positions, &knots.velocities])
+            .disagreements(&places);
+    if !knots.accelerations.is_empty() {
+        let values = [&knots.velocities, &knots.accelerations].map(Vec::as_slice);
+        found.extend(Compared::new(LimitKind::Acceleration, 0.0, knots, values).disagreements(&places));
+    }
     Some(found)
 }
 
-/// The slope at each of these samples of the parabola through it and its two neighbours.
-fn parabolas<'k>(
-    knots: &'k Knots<'_>,
-    slopes: &'k [f64],
-    places: &'k [usize],
-) -> impl Iterator<Item = f64> + 'k {
-    places.iter().map(|&n| {
-        let (before, after) = (knots.gap(n - 1), knots.gap(n));
-        (slopes[n - 1] * after + slopes[n] * before) / (before + after)
-    })
+/// Values, their declared derivative, and the derivative that they have.
+struct Compared<'k> {
+    kind: LimitKind,
+    resolution: f64,
+    knots: &'k Knots<'k>,
+    declared: &'k [f64],
+    slopes: Vec<f64>,
 }
 
-/// The usual second difference of velocities: nothing of a smooth motion that is sampled closely, the noise of one that was
-/// measured.
-fn noise(velocities: &[f64]) -> f64 {
-    let mut bends: Vec<f64> = velocities.windows(3).map(|v| (v[2] - 2.0 * v[1] + v[0]).abs()).collect();
-    let middle = bends.len() / 2;
-    if bends.is_empty() { 0.0 } else { *bends.select_nth_unstable_by(middle, f64::total_cmp).1 }
+impl<'k> Compared<'k> {
+    fn new(
+        kind: LimitKind,
+        resolution: f64,
+        knots: &'k Knots<'_>,
+        [values, declared]: [&'k [f64]; 2],
+    ) -> Self {
+        Self { kind, resolution, knots, declared, slopes: knots.differences(values, 1) }
+    }
+
+    fn disagreements(&self, places: &[usize]) -> Vec<Disagreement> {
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
+        let fastest = largest(&mut self.declared.iter().copied());
+        let fastest = fastest.max(largest(&mut places.iter().map(|&n| self.parabola(n))));
+        let allowed = DISAGREEMENT * fastest + noise(self.declared) + noise(&self.slopes) + REST;
+        // Steps of the declared derivative bound what a smooth motion can bend.
+        let most = 2.0 * largest(&mut self.declared.windows(2).map(|pair| pair[1] - pair[0]));
+        let bend = |n: usize| (self.slopes[n + 1] - 2.0 * self.slopes[n] + self.slopes[n - 1]).abs();
+        let disagreement = |&n: &usize| {
+            let gap = self.knots.gap(n).min(self.knots.gap(n - 1));
+            let error = bend(n - 1).max(bend(n)).min(most) + 4.0 * self.resolution / gap;
+            let (declared, of_values) = (self.declared[n], self.parabola(n));
+            let found = Disagreement { kind: self.kind, t: self.knots.times[n], declared, of_values };
+            (found.size() > allowed + error).then_some(found)
+        };
+        let mut found: Vec<Disagreement> = places.iter().filter_map(disagreement).collect();
+        found.sort_by(|a, b| b.size().total_cmp(&a.size()));
+        found.truncate(MOST);
+        found
+    }
+
+    /// The slope at a sample of the parabola through it and its two neighbours.
+    fn parabola(&self, n: usize) -> f64 {
+        let (before, after) = (self.knots.gap(n - 1), self.knots.gap(n));
+        (self.slopes[n - 1] * after + self.slopes[n] * before) / (before + after)
+    }
 }

@@ -22,11 +22,13 @@ pub struct Crossing {
     pub limit: f64,
 }
 
-/// What is beyond one pair of limits while a trajectory is gone through.
+/// What is beyond one limit while a trajectory is gone through.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beyond {
     kind: LimitKind,
-    limits: [f64; 2],
+    limit: f64,
+    /// `1` for a limit from above, `-1` for one from below.
+    side: f64,
     /// Whether the values are but known to be met somewhere near their times.
     is_bound: bool,
     found: Option<Found>,
@@ -40,8 +42,15 @@ struct Found {
 }
 
 impl Beyond {
-    pub(super) fn new(kind: LimitKind, limits: [f64; 2]) -> Self {
-        Self { kind, limits, is_bound: false, found: None }
+    /// A limit from below and one from above.
+    pub(super) fn both(kind: LimitKind, [lower, upper]: [f64; 2]) -> [Self; 2] {
+        [(lower, -1.0), (upper, 1.0)].map(|(limit, side)| Self {
+            kind,
+            limit,
+            side,
+            is_bound: false,
+            found: None,
+        })
     }
 
     /// Takes a value that is met somewhere near `at.t` by any smooth motion, and known but for `slack`; the samples that
@@ -74,14 +83,7 @@ impl Beyond {
 
     /// When the step is first beyond the limits, and for how long.
     fn outside(&self, segment: &Segment) -> (Option<f64>, f64) {
-        let mut places: Vec<f64> = self
-            .limits
-            .iter()
-            .filter(|limit| limit.is_finite())
-            .flat_map(|&limit| segment.passes(limit))
-            .collect();
-        places.extend([0.0, 1.0]);
-        places.sort_by(f64::total_cmp);
+        let places = [&[0.0], &segment.passes(self.limit)[..], &[1.0]].concat();
         let is_outside = |pair: &&[f64]| self.excess(segment.value(f64::midpoint(pair[0], pair[1]))) > 0.0;
         let mut first = None;
         let mut outside = 0.0;
@@ -102,16 +104,13 @@ impl Beyond {
     }
 
     fn excess(&self, value: f64) -> f64 {
-        let [lower, upper] = self.limits;
-        (value - upper).max(lower - value)
+        self.side * (value - self.limit)
     }
 
     /// Returns what was found.
     pub(super) fn crossing(&self, joint: &str) -> Option<Crossing> {
         let Found { first, outside, worst } = self.found?;
-        let [lower, upper] = self.limits;
-        let limit = if worst.value > upper { upper } else { lower };
         let outside = (!self.is_bound).then_some(outside);
-        Some(Crossing { joint: joint.to_owned(), kind: self.kind, first, outside, worst, limit })
+        Some(Crossing { joint: joint.to_owned(), kind: self.kind, first, outside, worst, limit: self.limit })
     }
 }

@@ -1,6 +1,7 @@
 //! Joints that follow others, along a trajectory that may or may not hold them.
 
-use super::Met;
+use super::interpolant::{Interpolation, Knots};
+use super::met::Met;
 use crate::trajectory::ArmTrajectory;
 use kinstep::robot::{Joint, JointKind, Robot};
 
@@ -24,8 +25,13 @@ pub struct Straying {
 
 impl ArmTrajectory {
     /// Returns the same with the joints of the robot that follow one of its joints and are not in it, moved by
-    /// `q = multiplier * driver + offset`, and those that are in it but stand elsewhere: further than 0.01 rad or 1 mm.
-    pub fn with_followers(&self, robot: &Robot, times: &[f64]) -> (Self, Vec<Straying>) {
+    /// `q = multiplier * driver + offset`, and those that are in it but stand elsewhere, at samples or between them: further than 0.01 rad or 1 mm.
+    pub fn with_followers(
+        &self,
+        robot: &Robot,
+        times: &[f64],
+        interpolation: Interpolation,
+    ) -> (Self, Vec<Straying>) {
         let place = |name: &str| self.joints.iter().position(|joint| joint == name);
         let (mut all, mut straying) = (self.clone(), Vec::new());
         for (follower, driver, multiplier, offset) in followers(robot) {
@@ -38,10 +44,11 @@ impl ArmTrajectory {
                 });
                 continue;
             };
+            let between =
+                Knots::of(self, own, times).less(&Knots::of(self, driven_by, times), multiplier, offset);
             let mut apart = Met { value: 0.0, t: times[0] };
-            for (n, &t) in times.iter().enumerate() {
-                let q = self.position(n);
-                apart.larger(q[own] - (multiplier * q[driven_by] + offset), t);
+            for n in 0..between.steps() {
+                apart.take(&between.segments(interpolation, n)[0]);
             }
             let allowed = APART[usize::from(follower.kind == JointKind::Prismatic)];
             if apart.value.abs() > allowed {

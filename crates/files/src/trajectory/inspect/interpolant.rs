@@ -1,5 +1,8 @@
 //! The motion between samples.
 
+use std::cell::OnceCell;
+
+use super::resolution::resolution;
 use super::segment::Segment;
 use crate::trajectory::ArmTrajectory;
 
@@ -53,7 +56,9 @@ pub(super) struct Knots<'t> {
     pub(super) positions: Vec<f64>,
     /// Empty where none are declared.
     pub(super) velocities: Vec<f64>,
-    accelerations: Vec<f64>,
+    /// Empty where none are declared.
+    pub(super) accelerations: Vec<f64>,
+    resolution: OnceCell<f64>,
 }
 
 impl<'t> Knots<'t> {
@@ -65,12 +70,36 @@ impl<'t> Knots<'t> {
             positions: of_joint(&arm.positions),
             velocities: of_joint(&arm.velocities),
             accelerations: of_joint(&arm.accelerations),
+            resolution: OnceCell::new(),
         }
     }
 
     /// Positions alone.
     pub(super) fn through(times: &'t [f64], positions: Vec<f64>) -> Self {
-        Self { times, positions, velocities: Vec::new(), accelerations: Vec::new() }
+        Self {
+            times,
+            positions,
+            velocities: Vec::new(),
+            accelerations: Vec::new(),
+            resolution: OnceCell::new(),
+        }
+    }
+
+    /// How finely the positions are known.
+    pub(super) fn resolution(&self) -> f64 {
+        *self.resolution.get_or_init(|| resolution(&self.positions))
+    }
+
+    /// Returns what these are more than `multiplier` times others and `offset`.
+    pub(super) fn less(&self, others: &Self, multiplier: f64, offset: f64) -> Self {
+        let apart = |own: &[f64], others: &[f64], offset: f64| -> Vec<f64> {
+            own.iter().zip(others).map(|(own, other)| own - (multiplier * other + offset)).collect()
+        };
+        Self {
+            velocities: apart(&self.velocities, &others.velocities, 0.0),
+            accelerations: apart(&self.accelerations, &others.accelerations, 0.0),
+            ..Self::through(self.times, apart(&self.positions, &others.positions, offset))
+        }
     }
 
     /// Number of steps between samples.
@@ -163,7 +192,7 @@ mod tests {
                 let times = [t, t + gap];
                 let at = |order: usize| times.map(|t| derived(order, t)).to_vec();
                 let knots =
-                    Knots { times: &times, positions: at(0), velocities: at(1), accelerations: at(2) };
+                    Knots { velocities: at(1), accelerations: at(2), ..Knots::through(&times, at(0)) };
                 for (order, segment) in knots.segments(interpolation, 0).iter().enumerate() {
                     for s in [0.0, 0.3, 1.0] {
                         let (found, wanted) = (segment.value(s), derived(order, segment.time(s)));

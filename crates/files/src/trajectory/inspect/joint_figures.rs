@@ -4,7 +4,7 @@ use super::continuity::{Disagreement, Jump, disagreements, jumps};
 use super::crossing::{Beyond, Crossing};
 use super::interpolant::{Interpolation, Knots};
 use super::met::{Met, largest};
-use super::resolution::resolution;
+use super::resolution::precision;
 use super::rest::{Rest, rests};
 use super::segment::Segment;
 use crate::trajectory::ArmTrajectory;
@@ -13,6 +13,8 @@ use kinstep::robot::Limits;
 
 /// How many times the rounding of the positions a derivative can carry, from the position itself to the jerk.
 const ROUNDING: [f64; 4] = [1.0, 2.0, 12.0, 60.0];
+/// How many times the step in which positions are rounded their differences can carry, of every order.
+const ROUNDED: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 /// What times may be rounded to \[s\]: messages count nanoseconds.
 const TIME_ROUNDING: f64 = 2e-9;
 
@@ -36,7 +38,7 @@ pub struct JointFigures {
     pub jerk: Met,
     /// Steps that no arm can take.
     pub jumps: Vec<Jump>,
-    /// Declared velocities that are not those of the positions, the worst first; `None` where that can not be told: none are
+    /// Declared velocities that are not those of the positions, and accelerations that are not those of the velocities; `None` where that can not be told: none are
     /// declared, or the samples are more than 0.05 s apart.
     pub disagreements: Option<Vec<Disagreement>>,
     /// Whether the joint rests at the start, and at the end.
@@ -45,6 +47,13 @@ pub struct JointFigures {
     pub crossings: Vec<Crossing>,
     /// Limits of which the interpolation can not decide whether they are crossed.
     pub undecided: Vec<LimitKind>,
+}
+
+impl JointFigures {
+    /// The worst disagreement of declared velocities, or of declared accelerations.
+    pub fn worst_disagreement(&self, kind: LimitKind) -> Option<&Disagreement> {
+        self.disagreements.iter().flatten().find(|found| found.kind == kind)
+    }
 }
 
 impl ArmTrajectory {
@@ -74,7 +83,10 @@ struct Inspection<'k> {
     positions: [Met; 2],
     /// Velocity, acceleration and jerk.
     largest: [Met; 3],
-    beyond: [Beyond; 4],
+    /// Limits from below and from above, of the position and its derivatives.
+    beyond: [[Beyond; 2]; 4],
+    /// What single or double precision makes of the positions.
+    precision: f64,
     limits: [f64; 4],
 }
 
@@ -83,14 +95,15 @@ impl<'k> Inspection<'k> {
         let first = Met { value: knots.positions[0], t: knots.times[0] };
         let sizes = [limits.upper, limits.velocity, limits.acceleration, limits.jerk];
         let kinds = [LimitKind::Position, LimitKind::Velocity, LimitKind::Acceleration, LimitKind::Jerk];
-        let mut beyond = [0, 1, 2, 3].map(|order| Beyond::new(kinds[order], [-sizes[order], sizes[order]]));
-        beyond[0] = Beyond::new(LimitKind::Position, [limits.lower, limits.upper]);
+        let mut beyond = [0, 1, 2, 3].map(|order| Beyond::both(kinds[order], [-sizes[order], sizes[order]]));
+        beyond[0] = Beyond::both(LimitKind::Position, [limits.lower, limits.upper]);
         let mut inspection = Self {
             knots,
             interpolation,
             positions: [first; 2],
             largest: [Met { value: 0.0, t: knots.times[0] }; 3],
             beyond,
+            precision: precision(&knots.positions),
             limits: sizes,
         };
         for n in 0..knots.steps() {
@@ -107,12 +120,15 @@ impl<'k> Inspection<'k> {
         let slacks = self.slacks(n);
         for (order, segment) in segments.iter().enumerate().take(self.decided() + 1) {
             // Declared values stand at the ends as they are.
-            let is_declared = order <= self.declared();
-            let ends = if is_declared { 0.0 } else { slacks[order] };
-            self.beyond[order].take(segment, [ends, slacks[order]]);
+            let ends = match order {
+                0 => self.precision,
+                order if order <= self.declared() => 0.0,
+                order => slacks[order],
+            };
+            self.beyond[order].iter_mut().for_each(|beyond| beyond.take(segment, [ends, slacks[order]]));
             match order.checked_sub(1) {
                 None => extend(&mut self.positions, segment),
-                Some(rate) => enlarge(&mut self.largest[rate], segment),
+                Some(rate) => self.largest[rate].take(segment),
             }
         }
     }
@@ -136,7 +152,7 @@ impl<'k> Inspection<'k> {
     fn slacks(&self, n: usize) -> [f64; 4] {
         let Knots { times, positions, .. } = self.knots;
         let h = self.knots.gap(n);
-        let position = 8.0 * f64::EPSILON * positions[n].abs().max(positions[n + 1].abs());
+        let position = self.precision;
         let time = (TIME_ROUNDING + 8.0 * f64::EPSILON * times[n + 1].abs()) / h;
         let moved = position + time * (positions[n + 1] - positions[n]).abs();
         [position, ROUNDING[1] * moved / h, ROUNDING[2] * moved / (h * h), ROUNDING[3] * moved / (h * h * h)]
@@ -145,7 +161,6 @@ impl<'k> Inspection<'k> {
     /// Divided differences of positions are derivatives of any smooth motion through them, somewhere between the samples.
     fn take_differences(&mut self) {
         let knots = self.knots;
-        let resolution = resolution(&knots.positions);
         let mut values = knots.positions.clone();
         for (order, power) in (1..=3_usize).zip(1..) {
             values = knots.differences(&values, order);
@@ -154,8 +169,8 @@ impl<'k> Inspection<'k> {
                 let met = Met { value, t: f64::midpoint(start, end) };
                 self.largest[order - 1].larger(value, met.t);
                 let gap = (n..n + order).map(|n| knots.gap(n)).fold(f64::INFINITY, f64::min);
-                let slack = self.slacks(n)[order] + ROUNDING[order] * resolution / gap.powi(power);
-                self.beyond[order].take_bound(met, start, slack);
+                let slack = self.slacks(n)[order] + ROUNDED[order] * knots.resolution() / gap.powi(power);
+                self.beyond[order].iter_mut().for_each(|beyond| beyond.take_bound(met, start, slack));
             }
         }
     }
@@ -168,7 +183,7 @@ impl<'k> Inspection<'k> {
         };
         let slopes = (0..knots.steps()).map(|n| Met { value: knots.slope(n), t: knots.times[n + 1] });
         let crossings: Vec<Crossing> =
-            self.beyond.iter().filter_map(|beyond| beyond.crossing(joint)).collect();
+            self.beyond.iter().flatten().filter_map(|beyond| beyond.crossing(joint)).collect();
         JointFigures {
             joint: joint.to_owned(),
             positions: self.positions,
@@ -209,16 +224,6 @@ fn extend(range: &mut [Met; 2], segment: &Segment) {
         }
         if met.value > range[1].value {
             range[1] = met;
-        }
-    }
-}
-
-/// Takes the largest value over a step where it is larger than all before, whatever the sign.
-fn enlarge(largest: &mut Met, segment: &Segment) {
-    let [least, most] = segment.bounds();
-    if least.abs().max(most.abs()) > largest.value.abs() {
-        for s in segment.turning_points().into_iter().chain([0.0, 1.0]) {
-            largest.larger(segment.value(s), segment.time(s));
         }
     }
 }

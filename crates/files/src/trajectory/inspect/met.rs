@@ -1,5 +1,7 @@
 //! Values, and when they were met.
 
+use super::segment::Segment;
+
 /// A value, and when it was met \[s\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Met {
@@ -14,6 +16,16 @@ impl Met {
     pub(super) fn larger(&mut self, value: f64, t: f64) {
         if value.abs() > self.value.abs() {
             *self = Self { value, t };
+        }
+    }
+
+    /// Takes the largest value over a step where that is larger, whatever the signs.
+    pub(super) fn take(&mut self, segment: &Segment) {
+        let [least, most] = segment.bounds();
+        if least.abs().max(most.abs()) > self.value.abs() {
+            for s in segment.turning_points().into_iter().chain([0.0, 1.0]) {
+                self.larger(segment.value(s), segment.time(s));
+            }
         }
     }
 }

@@ -11,6 +11,7 @@ mod followers;
 mod interpolant;
 mod joint_figures;
 mod met;
+mod noise;
 mod resolution;
 mod rest;
 mod segment;

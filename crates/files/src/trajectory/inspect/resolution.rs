@@ -13,6 +13,12 @@ pub(super) fn resolution(values: &[f64]) -> f64 {
     decimal(values).max(single(values)).max(encoder(values))
 }
 
+/// Returns what single precision, or else double, makes of values as large as these.
+pub(super) fn precision(values: &[f64]) -> f64 {
+    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    single(values).max(8.0 * f64::EPSILON * largest)
+}
+
 fn decimal(values: &[f64]) -> f64 {
     let is_rounded = |places: &i32| {
         let scale = 10_f64.powi(*places);
@@ -31,13 +37,22 @@ fn single(values: &[f64]) -> f64 {
     if is_single { largest * f64::from(f32::EPSILON) } else { 0.0 }
 }
 
-/// The step of which all differences are whole multiples, if the smallest of them is one.
+/// The step of which all differences are whole multiples, if the smallest of them is one and they waver as rounding makes them:
+/// those of an even acceleration from rest are whole multiples too.
 fn encoder(values: &[f64]) -> f64 {
     let differences = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
     let step = differences().fold(f64::INFINITY, f64::min);
     let is_whole = |difference: f64| (difference / step - (difference / step).round()).abs() <= WHOLE;
-    let is_rounded = step <= COARSEST && differences().nth(1).is_some() && differences().all(is_whole);
+    let is_rounded =
+        step <= COARSEST && differences().nth(1).is_some() && differences().all(is_whole) && wavers(values);
     if is_rounded { step } else { 0.0 }
+}
+
+/// Whether third differences are larger, all in all, than second ones.
+fn wavers(values: &[f64]) -> bool {
+    let bends: Vec<f64> = values.windows(3).map(|v| v[2] - 2.0 * v[1] + v[0]).collect();
+    let turns: f64 = bends.windows(2).map(|bend| (bend[1] - bend[0]).abs()).sum();
+    turns > bends.iter().map(|bend| bend.abs()).sum()
 }
 
 #[cfg(test)]
@@ -52,6 +67,8 @@ mod tests {
         assert_eq!(resolution(&smooth.iter().map(|q| (q * 1e4).round() / 1e4).collect::<Vec<_>>()), 1e-4);
         let encoder = std::f64::consts::TAU / 4096.0;
         assert!((resolution(&rounded(encoder)) - encoder).abs() < 1e-9);
+        let evenly: Vec<f64> = (0..50).map(|n| 3e-4 * f64::from(n * n) / 7.0).collect();
+        assert_eq!(resolution(&evenly), 0.0);
         let single = resolution(&smooth.iter().map(|&q| f64::from(q as f32)).collect::<Vec<_>>());
         assert!(single > 1e-8 && single < 1e-6, "{single}");
     }

@@ -2,7 +2,7 @@
 
 use super::continuity::CLOSE;
 use super::interpolant::Knots;
-use super::resolution::resolution;
+use super::noise::noise;
 
 /// The fastest declared velocity [rad/s or m/s] that is rest: what `ros2_control`'s joint trajectory controller takes for it.
 pub(super) const REST: f64 = 1e-6;
@@ -33,15 +33,16 @@ impl Rest {
     }
 }
 
-/// Says of the start and of the end whether the joint rests. Declared velocities say so themselves; positions say it of a
+/// Says of the start and of the end whether the joint rests. Declared velocities say so themselves, but for their noise; positions say it of a
 /// motion that would have to begin much harder than it goes on.
 pub(super) fn rests(knots: &Knots<'_>) -> [Rest; 2] {
     if let [first, .., last] = knots.velocities[..] {
-        return [first, last]
-            .map(|velocity| if velocity.abs() <= REST { Rest::AtRest } else { Rest::InMotion(velocity) });
+        let rest = REST + noise(&knots.velocities);
+        let said = |v: f64| if v.abs() <= rest { Rest::AtRest } else { Rest::InMotion(v) };
+        return [first, last].map(said);
     }
     let elsewhere = knots.hardest();
-    let rounding = resolution(&knots.positions);
+    let rounding = knots.resolution();
     [0, knots.steps() - 1].map(|n| {
         let (slope, gap) = (knots.slope(n), knots.gap(n));
         // From rest to a position at a distance takes twice the distance over the time squared.

@@ -3,7 +3,7 @@
 use super::Met;
 use super::continuity::CLOSE;
 use super::interpolant::Knots;
-use super::resolution::resolution;
+use super::noise::noise;
 use super::rest::REST;
 use crate::trajectory::{ArmTrajectory, Trajectory};
 
@@ -48,15 +48,17 @@ impl TimeFigures {
 fn repeated(trajectory: &Trajectory) -> Option<(usize, f64)> {
     let times = &trajectory.times;
     let same = |n: usize| trajectory.arms.iter().all(|arm| arm.position(n) == arm.position(n - 1));
-    let still: Vec<usize> =
-        (1..times.len()).filter(|&n| times[n] - times[n - 1] <= CLOSE && same(n)).collect();
-    if still.is_empty() {
+    let still = |n: &usize| times[*n] - times[*n - 1] <= CLOSE && same(*n);
+    let still: Vec<usize> = (1..times.len()).filter(still).collect();
+    let runs: Vec<&[usize]> = still.chunk_by(|a, b| a + 1 == *b).collect();
+    if runs.is_empty() {
         return None;
     }
     let joints: Vec<Passing<'_>> = trajectory.arms.iter().flat_map(|arm| passing(arm, times)).collect();
-    let mut found = still.into_iter().filter(|&n| joints.iter().any(|joint| joint.passes(n)));
+    let is_stall = |run: &&&[usize]| joints.iter().any(|joint| joint.passes(run[0], run[run.len() - 1]));
+    let mut found = runs.iter().filter(is_stall);
     let first = found.next()?;
-    Some((1 + found.count(), times[first]))
+    Some((first.len() + found.map(|run| run.len()).sum::<usize>(), times[first[0]]))
 }
 
 /// What tells whether a joint moves through a sample that repeats the one before.
@@ -74,32 +76,30 @@ fn passing<'t>(arm: &ArmTrajectory, times: &'t [f64]) -> Vec<Passing<'t>> {
     let joint = |joint: usize| {
         let knots = Knots::of(arm, joint, times);
         let fastest = knots.velocities.iter().map(|velocity| velocity.abs()).fold(0.0, f64::max);
-        let rounding = 4.0 * resolution(&knots.positions);
-        Passing { least: REST.max(MOVING * fastest), hardest: hardest(&knots), rounding, knots }
+        let rounding = 4.0 * knots.resolution();
+        let least = REST + noise(&knots.velocities).max(MOVING * fastest);
+        Passing { least, hardest: hardest(&knots), rounding, knots }
     };
     (0..arm.joints.len()).map(joint).collect()
 }
 
 impl Passing<'_> {
-    /// Whether the joint passes through sample `n`, which repeats the one before.
-    fn passes(&self, n: usize) -> bool {
-        if self.knots.velocities.is_empty() { self.goes_on(n) } else { self.loops(n) }
-    }
-
-    /// Whether declared velocities take the joint away from its place and back to it in one step.
-    fn loops(&self, n: usize) -> bool {
-        let around = &self.knots.velocities[n - 1..=n];
-        around.iter().all(|&v| v > self.least) || around.iter().all(|&v| v < -self.least)
-    }
-
-    /// Whether the joint moves on as before after it stood still for one sample, harder than it does anything else.
-    fn goes_on(&self, n: usize) -> bool {
-        if n < 2 || n >= self.knots.steps() {
+    /// Whether the joint passes through the samples from `first` to `last`, which repeat the one before `first`: it moves on as
+    /// before, and the velocities that it declares meanwhile do not rest, or else it would have to stop and start harder than it
+    /// does anything else.
+    fn passes(&self, first: usize, last: usize) -> bool {
+        if first < 2 || last >= self.knots.steps() {
             return false;
         }
-        let (before, after, gap) = (self.knots.slope(n - 2), self.knots.slope(n), self.knots.gap(n - 1));
-        let slower = before.abs().min(after.abs());
-        before * after > 0.0 && slower * gap > self.rounding && slower / gap > STALL * self.hardest
+        let (before, after) = (self.knots.slope(first - 2), self.knots.slope(last));
+        let (slower, gap) = (before.abs().min(after.abs()), self.knots.gap(first - 1));
+        if !(before * after > 0.0 && slower * gap > self.rounding) {
+            return false;
+        }
+        match self.knots.velocities.get(first - 1..=last) {
+            Some(declared) => declared.iter().all(|velocity| velocity * before.signum() > self.least),
+            None => slower / gap > STALL * self.hardest,
+        }
     }
 }
 
