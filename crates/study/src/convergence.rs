@@ -286,7 +286,7 @@ pub struct Convergence {
 
 impl Convergence {
     /// Judges `errors` at the gaps `sigmas`, coarsest first, against the order `claimed`; without a claim it says what was
-    /// seen, once the slopes of the finest two pairs agree to twice the tolerance.
+    /// seen, once the slopes of the finest two pairs agree to the tolerance.
     ///
     /// Three neighbouring rungs, two pairs, must lie `floor_margin` times above the floor. The order is confirmed when the
     /// finest pair is within the tolerance of it and the one before within twice that. It is not reached (or
@@ -364,7 +364,7 @@ impl Convergence {
 fn unclaimed(before: f64, finest: f64, criteria: &Criteria) -> Verdict {
     if finest < LEAST_ORDER {
         Verdict::Undecidable(Undecidable::NotFalling { finest })
-    } else if (finest - before).abs() <= 2.0 * criteria.tolerance {
+    } else if (finest - before).abs() <= criteria.tolerance {
         Verdict::Seen { slope: finest, before }
     } else {
         Verdict::Undecidable(Undecidable::Unsettled { before, finest })

@@ -102,7 +102,7 @@ fn problems_come_by_name_and_from_files() {
     let error = desk.run(&["order", "bad.toml", "--json"]).expect(2).error();
     assert!(error["message"].as_str().unwrap().contains("\"y\" means nothing here"), "{error}");
     // The token itself is pointed at.
-    assert_eq!((&error["line"], &error["column"]), (&4.into(), &19.into()), "{error}");
+    assert_eq!((&error["line"], &error["column"]), (&4.into(), &20.into()), "{error}");
     let error =
         kinstep(&["order", "problems/kepler.toml", "--formula", "nosuch", "--json"]).expect(2).error();
     assert!(error["message"].as_str().unwrap().starts_with("--formula nosuch: "), "{error}");
@@ -221,7 +221,7 @@ fn what_can_not_be_compared_has_no_numbers_and_keys_without_effect_are_named() {
     let desk = Desk::new(&[("b.toml", blowing), ("s.toml", SMALL)]);
     let run = desk.run(&["order", "b.toml", "--out", "study"]).expect(5);
     assert!(
-        run.out.contains("leaves all bounds") && !run.out.contains("NaN!") && !run.out.contains("inf"),
+        run.out.contains("leaves all bounds") && !run.out.contains("NaN!"),
         "{}",
         run.out
     );
