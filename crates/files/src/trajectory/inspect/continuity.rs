@@ -5,6 +5,7 @@
 
 use super::interpolant::Knots;
 use super::noise::noise;
+use super::resolution::resolution;
 use super::rest::REST;
 use kinstep::planner::LimitKind;
 
@@ -91,7 +92,8 @@ pub(super) fn disagreements(knots: &Knots<'_>) -> Option<Vec<Disagreement>> {
             .disagreements(&places);
     if !knots.accelerations.is_empty() {
         let values = [&knots.velocities, &knots.accelerations].map(Vec::as_slice);
-        found.extend(Compared::new(LimitKind::Acceleration, 0.0, knots, values).disagreements(&places));
+        let step = resolution(&knots.velocities);
+        found.extend(Compared::new(LimitKind::Acceleration, step, knots, values).disagreements(&places));
     }
     Some(found)
 }
@@ -119,7 +121,11 @@ impl<'k> Compared<'k> {
         let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
         let fastest = largest(&mut self.declared.iter().copied());
         let fastest = fastest.max(largest(&mut places.iter().map(|&n| self.parabola(n))));
-        let allowed = DISAGREEMENT * fastest + noise(self.declared) + noise(&self.slopes) + REST;
+        let allowed = DISAGREEMENT * fastest
+            + noise(self.declared)
+            + noise(&self.slopes)
+            + resolution(self.declared)
+            + REST;
         // Steps of the declared derivative bound what a smooth motion can bend.
         let most = 2.0 * largest(&mut self.declared.windows(2).map(|pair| pair[1] - pair[0]));
         let bend = |n: usize| (self.slopes[n + 1] - 2.0 * self.slopes[n] + self.slopes[n - 1]).abs();

@@ -85,6 +85,12 @@ impl<'t> Knots<'t> {
         }
     }
 
+    /// The same, with positions that are known no better than to this step: that of encoders like its own.
+    pub(super) fn known_to(self, step: f64) -> Self {
+        let resolution = OnceCell::from(self.resolution().max(step));
+        Self { resolution, ..self }
+    }
+
     /// How finely the positions are known.
     pub(super) fn resolution(&self) -> f64 {
         *self.resolution.get_or_init(|| resolution(&self.positions))

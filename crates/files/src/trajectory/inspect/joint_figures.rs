@@ -4,7 +4,7 @@ use super::continuity::{Disagreement, Jump, disagreements, jumps};
 use super::crossing::{Beyond, Crossing};
 use super::interpolant::{Interpolation, Knots};
 use super::met::{Met, largest};
-use super::resolution::precision;
+use super::resolution::{encoder, precision};
 use super::rest::{Rest, rests};
 use super::segment::Segment;
 use crate::trajectory::ArmTrajectory;
@@ -68,11 +68,15 @@ impl ArmTrajectory {
         limits: &[Limits],
         interpolation: Interpolation,
     ) -> Vec<JointFigures> {
-        let figures = |joint: usize| {
-            let knots = Knots::of(self, joint, times);
+        let knots: Vec<Knots<'_>> =
+            (0..self.joints.len()).map(|joint| Knots::of(self, joint, times)).collect();
+        // A joint that hardly moves does not show the step of its encoder; those beside it do.
+        let step = knots.iter().map(|knots| encoder(&knots.positions)).fold(0.0, f64::max);
+        let figures = |(joint, knots): (usize, Knots<'_>)| {
+            let knots = knots.known_to(step);
             Inspection::of(&knots, interpolation, &limits[joint]).figures(&self.joints[joint])
         };
-        (0..self.joints.len()).map(figures).collect()
+        knots.into_iter().enumerate().map(figures).collect()
     }
 }
 

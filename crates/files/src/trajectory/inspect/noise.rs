@@ -12,8 +12,8 @@ pub(super) fn noise(values: &[f64]) -> f64 {
     if third > second { MOST * second } else { 0.0 }
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.iter_mut().for_each(|value| *value = value.abs());
+fn median(values: Vec<f64>) -> f64 {
+    let mut values: Vec<f64> = values.into_iter().map(f64::abs).collect();
     let middle = values.len() / 2;
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

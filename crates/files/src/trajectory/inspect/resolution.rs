@@ -39,12 +39,11 @@ fn single(values: &[f64]) -> f64 {
 
 /// The step of which all differences are whole multiples, if the smallest of them is one and they waver as rounding makes them:
 /// those of an even acceleration from rest are whole multiples too.
-fn encoder(values: &[f64]) -> f64 {
+pub(super) fn encoder(values: &[f64]) -> f64 {
     let differences = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
     let step = differences().fold(f64::INFINITY, f64::min);
     let is_whole = |difference: f64| (difference / step - (difference / step).round()).abs() <= WHOLE;
-    let is_rounded =
-        step <= COARSEST && differences().nth(1).is_some() && differences().all(is_whole) && wavers(values);
+    let is_rounded = step <= COARSEST && differences().all(is_whole) && wavers(values);
     if is_rounded { step } else { 0.0 }
 }
 
