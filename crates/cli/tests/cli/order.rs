@@ -220,11 +220,7 @@ fn what_can_not_be_compared_has_no_numbers_and_keys_without_effect_are_named() {
     let blowing = "sigma = 0.01\nduration = 2.0\nformula = \"ab4\"\n[problem]\nequations = [\"x' = x^2\"]\ninitial = [\"x = 1\"]\n";
     let desk = Desk::new(&[("b.toml", blowing), ("s.toml", SMALL)]);
     let run = desk.run(&["order", "b.toml", "--out", "study"]).expect(5);
-    assert!(
-        run.out.contains("leaves all bounds") && !run.out.contains("NaN!"),
-        "{}",
-        run.out
-    );
+    assert!(run.out.contains("leaves all bounds") && !run.out.contains("NaN!"), "{}", run.out);
     let csv = std::fs::read_to_string(desk.path("study/order-b.csv")).unwrap();
     assert!(!csv.contains("NaN") && !csv.contains("inf"), "{csv}");
     let extended = ["--set", "study.precision=extended", "--set", "study.steps=[100, 200, 400]"];
