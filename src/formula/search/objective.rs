@@ -140,6 +140,8 @@ impl Objective {
     pub fn value(&self, figures: &Figures) -> f64 {
         match self {
             Self::Range => figures.h_max,
+            // The merit keeps it off zero.
+            Self::Decay => figures.r_opt,
             Self::Beat(_) => (-self.merit(figures)).exp_m1(),
             _ => self.merit(figures).exp(),
         }

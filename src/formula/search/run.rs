@@ -232,8 +232,10 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
     fn to_fractions(&self, judge: &Judge<'_>, refined: &[Best]) -> Vec<Candidate> {
         let total = self.denominators.len();
         let mut found: Vec<Candidate> = Vec::new();
-        // Small denominators first: what a search with a smaller bound finds is found here too, in the same time.
-        for (k, group) in self.denominators.chunks(GROUP).enumerate() {
+        // From both ends: if time runs out, the largest are there, near to which the best are, and the simplest.
+        let ends = self.denominators.iter().rev().zip(&self.denominators);
+        let all: Vec<u32> = ends.flat_map(|(&large, &small)| [large, small]).take(total).collect();
+        for (k, group) in all.chunks(GROUP).enumerate() {
             if (self.stop)() && !found.is_empty() {
                 break;
             }
@@ -283,7 +285,10 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
     fn best_of(&self, judge: &Judge<'_>, candidates: &[Candidate]) -> Option<Found> {
         let word = judge.objective.word();
         let mut rising: Vec<&Candidate> = candidates.iter().collect();
-        rising.sort_by_key(|candidate| candidate.denominator);
+        // When time has run out, there is only some for what promises most.
+        if !(self.stop)() {
+            rising.sort_by_key(|candidate| candidate.denominator);
+        }
         let mut best: Option<Found> = None;
         let (mut octave, mut decided) = (0, 0);
         for candidate in rising {
