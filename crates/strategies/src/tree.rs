@@ -7,7 +7,7 @@ use proptest::sample::Index;
 use std::fmt::{self, Write as _};
 
 /// The limits of joints that have some [rad or m]: wide enough for every follower.
-const LIMIT: &str = "<limit lower=\"-20.5\" upper=\"20.5\" effort=\"1\" velocity=\"100\"/>";
+const LIMIT: &str = "<limit lower=\"-19.5\" upper=\"19.5\" effort=\"1\" velocity=\"100\"/>";
 
 /// How a joint follows another: `multiplier * driver + offset`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -126,7 +126,7 @@ fn a_file_of_limits_adds_what_a_robot_lacks() {
     let check = ["check", "cubic_peak.yaml", "--robot", "ur5e", "--limits", "joint_limits.yaml"];
     let text = desk.run(&check).expect(1).out;
     // 6 q / T^2 at both ends of a cubic from rest to rest.
-    assert!(text.contains("acceleration 15 crosses its limit 14, first at t = 0 s"), "{text}");
+    assert!(text.contains("acceleration 15 crosses its limit 14 by 1, first at t = 0 s"), "{text}");
     let unknown = std::fs::read_to_string(desk.path("joint_limits.yaml")).unwrap().replace("pan", "span");
     std::fs::write(desk.path("joint_limits.yaml"), unknown).unwrap();
     assert!(desk.run(&check).expect(3).err.contains("shoulder_pan_joint"));
