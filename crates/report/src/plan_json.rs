@@ -75,10 +75,10 @@ struct Arm<'a> {
     rms_error_steady: f64,
     max_position_error: f64,
     max_orientation_error: f64,
-    /// At the sample where its bound was least; null where only the bound is known.
-    smallest_singular_value: Option<f64>,
-    /// No sample is below this.
+    /// No sample on the path is below this.
     smallest_singular_value_at_least: f64,
+    /// What it is at the sample where that bound was least; null where that is not known.
+    smallest_singular_value_at_most: Option<f64>,
     damped_samples: usize,
     limits: Limits<'a>,
     start_pose: Option<StartPose<'a>>,
@@ -171,8 +171,8 @@ impl<'a> Arm<'a> {
             rms_error_steady: arm.rms_error_steady,
             max_position_error: arm.max_position_error,
             max_orientation_error: arm.max_orientation_error,
-            smallest_singular_value: arm.worst_singular_value,
             smallest_singular_value_at_least: arm.smallest_singular_value.0,
+            smallest_singular_value_at_most: arm.worst_singular_value,
             damped_samples: arm.damped_samples,
             limits: Limits { ok: arm.violations.is_empty(), violations: violations.collect() },
             convergence: arm.convergence.as_ref().map(|convergence| Convergence {

@@ -100,8 +100,7 @@ pub struct ArmPlan {
     /// A lower bound of the smallest singular value of the task Jacobian met, at most a factor `sqrt(rows)` below it, and the
     /// time \[s\] of the sample where that bound was least. Of arms that are resolved together it is that of all of them.
     pub smallest_singular_value: (f64, f64),
-    /// The smallest singular value of the task Jacobian at that sample, which no other sample is below by more than the bound
-    /// says; `None` where the run stopped there, or where arms are resolved together.
+    /// The smallest singular value of the task Jacobian at that sample, a bound from above of the smallest one met; `None` where the run stopped there, or where arms are resolved together.
     pub worst_singular_value: Option<f64>,
     /// On how many samples the law damped its answer.
     pub damped_samples: usize,

@@ -185,7 +185,9 @@ fn number_row(plan: &Plan, arm: &ArmPlan) -> String {
     let errors = [arm.max_error, arm.max_error_steady, arm.max_position_error, arm.max_orientation_error];
     let (value, at) = arm.smallest_singular_value;
     let singular = if value.is_finite() && plan.samples() > 0 {
-        let shown = arm.worst_singular_value.map_or_else(|| format!("at least {}", plain(value)), plain);
+        let most =
+            arm.worst_singular_value.map_or_else(String::new, |most| format!(", at most {}", plain(most)));
+        let shown = format!("at least {}{most}", plain(value));
         format!("{shown} {}", moment(at, "the worst conditioned posture"))
     } else {
         "\u{2013}".to_owned()

@@ -297,3 +297,21 @@ fn gaps_at_which_a_row_is_unstable_are_named_and_left_out() {
     stiff.sigma = 0.02.into();
     assert!(!only(&stiff).seen.verdict.is_not_reached());
 }
+
+/// The derivative of such an `exact` is right almost everywhere; the equations solved anew say otherwise.
+#[test]
+fn no_row_is_blamed_for_a_solution_that_the_equations_do_not_have() {
+    for (equation, initial, exact) in
+        [("1.5*sqrt(t)", "0", "t^1.5"), ("2*sqrt(x)", "0", "t^2"), ("-x", "1", "exp(-t)*(1 + 1e-4*(t>1.23))")]
+    {
+        let text = format!(
+            "sigma = 0.01\nduration = 3.0\nformula = \"ab4\"\n[problem]\nsource = \"a test\"\nequations = [\"x' = {equation}\"]\n\
+             initial = [\"x = {initial}\"]\nexact = [\"x = {exact}\"]\n"
+        );
+        let scenario = scenario(&text, &[]);
+        let rows = ScenarioStudy::new(&scenario, None, &FormulaRows::default(), &[]).unwrap().run().unwrap();
+        let verdict = &rows[0].seen.verdict;
+        assert!(!verdict.is_not_reached(), "{exact}: {verdict}");
+        assert!(rows[0].report.notes[0].contains("problem.exact"), "{exact}: {:?}", rows[0].report.notes);
+    }
+}

@@ -62,9 +62,8 @@ impl Beyond {
         }
     }
 
-    /// Takes what happens over one step: at its ends known but for the rounding `slacks[0]`, between them for `slacks[1]`.
-    pub(super) fn take(&mut self, segment: &Segment, slacks: [f64; 2]) {
-        let [least, largest] = segment.bounds();
+    /// Takes what happens over one step, whose values have these bounds: at its ends known but for the rounding `slacks[0]`, between them for `slacks[1]`.
+    pub(super) fn take(&mut self, segment: &Segment, [least, largest]: [f64; 2], slacks: [f64; 2]) {
         if !(self.excess(least) > 0.0 || self.excess(largest) > 0.0) {
             return;
         }

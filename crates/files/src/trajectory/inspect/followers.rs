@@ -48,7 +48,8 @@ impl ArmTrajectory {
                 Knots::of(self, own, times).less(&Knots::of(self, driven_by, times), multiplier, offset);
             let mut apart = Met { value: 0.0, t: times[0] };
             for n in 0..between.steps() {
-                apart.take(&between.segments(interpolation, n)[0]);
+                let [apart_over_step, ..] = between.segments(interpolation, n);
+                apart.take(&apart_over_step, apart_over_step.bounds());
             }
             let allowed = APART[usize::from(follower.kind == JointKind::Prismatic)];
             if apart.value.abs() > allowed {

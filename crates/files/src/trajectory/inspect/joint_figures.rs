@@ -124,15 +124,18 @@ impl<'k> Inspection<'k> {
         let slacks = self.slacks(n);
         for (order, segment) in segments.iter().enumerate().take(self.decided() + 1) {
             // Declared values stand at the ends as they are.
+            let bounds = segment.bounds();
             let ends = match order {
                 0 => self.precision,
                 order if order <= self.declared() => 0.0,
                 order => slacks[order],
             };
-            self.beyond[order].iter_mut().for_each(|beyond| beyond.take(segment, [ends, slacks[order]]));
+            self.beyond[order]
+                .iter_mut()
+                .for_each(|beyond| beyond.take(segment, bounds, [ends, slacks[order]]));
             match order.checked_sub(1) {
-                None => extend(&mut self.positions, segment),
-                Some(rate) => self.largest[rate].take(segment),
+                None => extend(&mut self.positions, segment, bounds),
+                Some(rate) => self.largest[rate].take(segment, bounds),
             }
         }
     }
@@ -216,8 +219,7 @@ impl<'k> Inspection<'k> {
 }
 
 /// Widens a range by what is met over a step.
-fn extend(range: &mut [Met; 2], segment: &Segment) {
-    let [least, most] = segment.bounds();
+fn extend(range: &mut [Met; 2], segment: &Segment, [least, most]: [f64; 2]) {
     if least >= range[0].value && most <= range[1].value {
         return;
     }

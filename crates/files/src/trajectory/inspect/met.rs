@@ -19,9 +19,8 @@ impl Met {
         }
     }
 
-    /// Takes the largest value over a step where that is larger, whatever the signs.
-    pub(super) fn take(&mut self, segment: &Segment) {
-        let [least, most] = segment.bounds();
+    /// Takes the largest value over a step, whose values have these bounds, where that is larger, whatever the signs.
+    pub(super) fn take(&mut self, segment: &Segment, [least, most]: [f64; 2]) {
         if least.abs().max(most.abs()) > self.value.abs() {
             for s in segment.turning_points().into_iter().chain([0.0, 1.0]) {
                 self.larger(segment.value(s), segment.time(s));
