@@ -81,7 +81,8 @@ pub struct ArmPlan {
     pub joints: Vec<String>,
     /// Joint positions [rad or m], sample after sample.
     pub positions: Vec<f64>,
-    /// Feedforward joint velocities `J^+ phi'` [rad/s or m/s], sample after sample.
+    /// Feedforward joint velocities `J^+ phi'` [rad/s or m/s], sample after sample; the slopes of the positions while an arm
+    /// converges to its path.
     pub velocities: Vec<f64>,
     /// The task error of every sample (linear \[m\]; angular \[rad\]), zero in the components the task does not ask for.
     pub errors: Vec<Vector6<f64>>,

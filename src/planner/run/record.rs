@@ -122,6 +122,7 @@ fn converge(plan: &mut ArmPlan, tolerance: f64, factor: (f64, usize), sigma: f64
     let convergence = Convergence::of(&plan.errors, tolerance, factor, sigma);
     let (initial, reached) = (convergence.initial_error, convergence.reached);
     plan.convergence = Some(convergence);
+    take_velocities_of_positions(plan, reached.map(|reached| (reached / sigma).round() as usize), sigma);
     if let Some(reached) = reached {
         count_from(plan, (reached / sigma).round() as usize);
         return None;
@@ -130,6 +131,25 @@ fn converge(plan: &mut ArmPlan, tolerance: f64, factor: (f64, usize), sigma: f64
         "arm `{}` started {initial:.3e} off its path and did not stay within {tolerance:.3e} of it",
         plan.name
     ))
+}
+
+/// While feedback brings an arm in, or all along where it does not, the feedforward is not what the joints do: their velocities are
+/// then the slopes of their positions.
+fn take_velocities_of_positions(plan: &mut ArmPlan, until: Option<usize>, sigma: f64) {
+    let joints = plan.joints.len();
+    let samples = plan.positions.len() / joints.max(1);
+    let until = until.unwrap_or(samples).min(samples);
+    if samples < 2 {
+        return;
+    }
+    for n in 0..until {
+        let [before, after] = [n.saturating_sub(1), (n + 1).min(samples - 1)];
+        let gap = (after - before) as f64 * sigma;
+        for joint in 0..joints {
+            let [from, to] = [before, after].map(|n| plan.positions[n * joints + joint]);
+            plan.velocities[n * joints + joint] = (to - from) / gap;
+        }
+    }
 }
 
 /// The smallest singular value where its bound was least: in a step a bound is all that is worth its time.

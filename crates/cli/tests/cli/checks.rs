@@ -131,3 +131,31 @@ fn a_file_of_limits_adds_what_a_robot_lacks() {
     std::fs::write(desk.path("joint_limits.yaml"), unknown).unwrap();
     assert!(desk.run(&check).expect(3).err.contains("shoulder_pan_joint"));
 }
+
+#[test]
+fn an_arm_that_converges_is_written_as_it_moves() {
+    let desk = Desk::new(&[("s.toml", CONVERGING)]);
+    desk.run(&["plan", "s.toml", "--out", "o"]).expect(0);
+    let text = desk.run(&["check", "o"]).expect(1).out;
+    assert!(!text.contains("crosses its limit") && !text.contains("differs"), "{text}");
+    // The loop starts at once, which no arm can: that is so.
+    assert!(text.contains("jumps by"), "{text}");
+}
+
+const CONVERGING: &str = r#"
+sigma = 0.01
+duration = 5.0
+formula = "la6-twenty-four"
+[law]
+kind = "pseudoinverse"
+h = 0.4
+[[arm]]
+name = "left"
+robot = "panda"
+base = "panda_link0"
+tip = "panda_link8"
+task = "position"
+q0 = [0, -0.5, 0, -2, 0, 1.6, 0.8]
+approach = "converge"
+path = { kind = "circle", radius = 0.05, center = [0.36, 0.03, 0.65], time_law = "sin2" }
+"#;

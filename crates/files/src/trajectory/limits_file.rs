@@ -288,7 +288,11 @@ fn joint(name: &str, node: &Node<'_>, findings: &mut Findings<'_>) -> JointEntry
     };
     let own_keys =
         || QUANTITIES.iter().flat_map(|(_, has, values)| std::iter::once(has).chain(values.iter()));
-    for (key, value) in entries {
+    for (place, (key, value)) in entries.iter().enumerate() {
+        if entries[..place].iter().any(|(other, _)| other == key) {
+            let message = format!("joint {}: {} stands twice; remove one", quote(name), quote(key));
+            findings.add(Severity::Error, value.at(), message);
+        }
         if NOT_APPLIED.contains(&key.as_ref()) {
             // That there is none of what is not applied needs no word.
             if !value.text().is_ok_and(|text| text.eq_ignore_ascii_case("false")) && key.starts_with("has_") {
@@ -396,6 +400,8 @@ mod tests {
                 "2:38: error: joint `panda_joint1` has no key `has_velocity_limit`; did you mean `has_velocity_limits`?"
             ]
         );
+        let found = errors("joint_limits:\n  panda_joint1: {max_velocity: 0.5, max_velocity: 0.7}\n");
+        assert!(found[0].contains("`max_velocity` stands twice"), "{found:?}");
         let found = errors("joint_limits:\n  elbow: {has_velocity_limits: true, max_velocity: 1}\n");
         assert!(
             found[0]

@@ -15,7 +15,8 @@ pub struct ArmTrajectory {
     pub joints: Vec<String>,
     /// Joint positions [rad or m], sample after sample.
     pub positions: Vec<f64>,
-    /// Joint velocities [rad/s or m/s], sample after sample: of a plan the feedforward `J^+ phi'`. Empty where unknown.
+    /// Joint velocities [rad/s or m/s], sample after sample: of a plan the feedforward `J^+ phi'`,
+    /// and the slope of the positions while an arm converges to its path. Empty where unknown.
     pub velocities: Vec<f64>,
     /// Joint accelerations [rad/s^2 or m/s^2], sample after sample. Empty where unknown, as of a plan.
     pub accelerations: Vec<f64>,
