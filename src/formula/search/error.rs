@@ -87,14 +87,25 @@ pub enum SearchError {
         id: String,
     },
     /// Nothing stable was met.
-    #[error(
-        "no strictly zero-stable row was found in {starts} starts; raise --starts, or ask for a lower order or more steps"
-    )]
+    #[error("{}", nothing_found(*.starts, *.least_range))]
     NothingFound {
         /// How many starting points there were.
         starts: usize,
+        /// The range that a row had to have at least; zero where none was asked for.
+        least_range: f64,
     },
     /// So many threads could not be started.
     #[error("{0} threads can not be started; ask for fewer")]
     Threads(usize),
+}
+
+fn nothing_found(starts: usize, least_range: f64) -> String {
+    let remedy = "raise --starts, or ask for a lower order or more steps";
+    if least_range > 0.0 {
+        return format!(
+            "no strictly zero-stable row with a feedback range of at least {least_range} was found in {starts} starts; lower \
+             --least-range, {remedy}"
+        );
+    }
+    format!("no strictly zero-stable row was found in {starts} starts; {remedy}")
 }

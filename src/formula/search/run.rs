@@ -157,7 +157,10 @@ impl<O: Observer, S: Fn() -> bool + Sync> Run<'_, O, S> {
         let fine = refined.iter().filter(|_| !(self.stop)()).filter_map(|best| self.finest(&judge, best));
         let best =
             rows.iter().cloned().chain(fine.take(MOST_FINE)).min_by(|a, b| a.merit.total_cmp(&b.merit));
-        let best = best.ok_or(SearchError::NothingFound { starts: self.options.starts })?;
+        let best = best.ok_or(SearchError::NothingFound {
+            starts: self.options.starts,
+            least_range: self.options.least_range,
+        })?;
         let bound = self.options.objective.value(&best.figures);
         let front = if self.options.front { self.front(&rows) } else { Vec::new() };
         Ok(Outcome { bound, rows, front, complete: !(self.stop)() })

@@ -400,7 +400,9 @@ mod tests {
                 "2:38: error: joint `panda_joint1` has no key `has_velocity_limit`; did you mean `has_velocity_limits`?"
             ]
         );
-        let found = errors("joint_limits:\n  panda_joint1: {max_velocity: 0.5, max_velocity: 0.7}\n");
+        let found = errors(
+            "joint_limits:\n  panda_joint1: {has_velocity_limits: true, max_velocity: 0.5, max_velocity: 0.7}\n",
+        );
         assert!(found[0].contains("`max_velocity` stands twice"), "{found:?}");
         let found = errors("joint_limits:\n  elbow: {has_velocity_limits: true, max_velocity: 1}\n");
         assert!(
