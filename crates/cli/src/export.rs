@@ -44,12 +44,7 @@ pub(super) fn run(arguments: &ExportArguments, output: &mut Output) -> Result<Ex
     let Loaded { mut trajectory, stage, notes, joints } =
         load(&arguments.trajectory, &arguments.robot, None, &arguments.reading)?;
     let warnings = units::questions(&trajectory, &joints);
-    for note in &notes {
-        output.aside(&format!("note: {note}"));
-    }
-    for warning in &warnings {
-        output.remark(&format!("warning: {warning}"));
-    }
+    output.remarks(&notes, &warnings);
     in_order_of(&mut trajectory, &stage);
     let recording = Recording { trajectory: &trajectory, stage: &stage };
     let exports = Exports::new(&chosen, &recording.machines(), arguments.append_stop)?;

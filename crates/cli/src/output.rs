@@ -125,6 +125,16 @@ impl Output {
         }
     }
 
+    /// Writes what was recognised of a file, unless that is not wanted, and what is questionable about it.
+    pub(super) fn remarks(&self, notes: &[String], warnings: &[String]) {
+        for note in notes {
+            self.aside(&format!("note: {note}"));
+        }
+        for warning in warnings {
+            self.remark(&format!("warning: {warning}"));
+        }
+    }
+
     /// Reports a failure in the form that was asked for, and returns its exit code.
     pub(super) fn failure(&mut self, failure: &Failure) -> Exit {
         let exit = failure.exit;
@@ -140,6 +150,13 @@ impl Output {
         }
         exit
     }
+}
+
+/// A time without the digits that a sum of gaps leaves behind.
+pub(super) fn moment(t: f64) -> String {
+    let text = format!("{t:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    (if text == "-0" { "0" } else { text }).to_owned()
 }
 
 fn failure_document(failure: &Failure) -> Value {

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::failure::{Exit, Failure};
+use super::output::moment;
 
 /// A run that stopped before its end.
 pub(super) struct Stopped {
@@ -24,9 +25,7 @@ impl Stopped {
         let document: Value = serde_json::from_str(&text).ok()?;
         let (status, reason) = (document["status"].as_str()?, document["reason"].as_str()?);
         let (samples, sigma) = (document["samples"].as_u64()?, document["sigma"].as_f64()?);
-        let last = samples.saturating_sub(1) as f64 * sigma;
-        let last = format!("{last:.6}");
-        let last = last.trim_end_matches('0').trim_end_matches('.');
+        let last = moment(samples.saturating_sub(1) as f64 * sigma);
         let sentence = format!("the run stopped after t = {last} s, {status}: {reason}");
         Some(Self { sentence, samples })
     }

@@ -191,8 +191,8 @@ impl ScenarioStudy {
             self.problem.as_ref().filter(|_| self.is_stated && seen.verdict.is_not_reached())
         {
             // Before a row is blamed, the solution that is stated has to be the one that the equations have from the start.
-            let tolerance = if extended { TOLERANCES.1 } else { TOLERANCES.0 };
-            let second = of_problem(equations, &Reference::extended(equations, &self.ladder, tolerance))?;
+            let reference = Reference::extended(equations, &self.ladder, tolerance(extended));
+            let second = of_problem(equations, &reference)?;
             let seen_again = measured(&second);
             if !seen_again.verdict.is_not_reached() {
                 (report, seen) = (second, seen_again);
@@ -481,6 +481,11 @@ fn coarsest(scenario: &Scenario, rows: &[Formula]) -> Option<f64> {
     Some(most.min(8.0 * scenario.sigma.value()))
 }
 
+/// The tolerance of a reference for runs in doubles, or with 32 digits.
+fn tolerance(extended: bool) -> f64 {
+    if extended { TOLERANCES.1 } else { TOLERANCES.0 }
+}
+
 fn reference(
     equations: &Equations,
     ladder: &Ladder,
@@ -489,7 +494,7 @@ fn reference(
 ) -> Result<Reference, ScenarioError> {
     let at = KeyPath::dotted("study.reference");
     let extended = spec.precision == Some(Precision::Extended);
-    let tolerance = if extended { TOLERANCES.1 } else { TOLERANCES.0 };
+    let tolerance = tolerance(extended);
     match spec.reference.as_deref() {
         None => Ok(Reference::exact(equations, ladder)
             .unwrap_or_else(|| Reference::extended(equations, ladder, tolerance))),

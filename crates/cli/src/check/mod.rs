@@ -21,12 +21,7 @@ pub(super) fn run(arguments: &CheckArguments, output: &mut Output) -> Result<Exi
         checked.ok = false;
         checked.failures.insert(0, stopped.sentence);
     }
-    for note in &checked.notes {
-        output.aside(&format!("note: {note}"));
-    }
-    for warning in &checked.warnings {
-        output.remark(&format!("warning: {warning}"));
-    }
+    output.remarks(&checked.notes, &checked.warnings);
     output.show(&checked)?;
     Ok(if checked.ok { Exit::Done } else { Exit::CheckFailed })
 }

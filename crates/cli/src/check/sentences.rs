@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::super::output::moment;
 use kinstep::planner::LimitKind;
 use kinstep_files::trajectory::{
     Course, Crossing, Disagreement, JointFigures, Jump, Met, Rest, Straying, TimeFigures,
@@ -10,13 +11,6 @@ use kinstep_report::short;
 
 /// The fraction of a whole turn within which a jump is one.
 const TURN: f64 = 0.05;
-
-/// A time without the digits that a sum of gaps leaves behind.
-pub(super) fn moment(t: f64) -> String {
-    let text = format!("{t:.6}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    (if text == "-0" { "0" } else { text }).to_owned()
-}
 
 pub(super) fn of_clock(clock: &TimeFigures) -> Vec<String> {
     let sentence = |(count, t)| {
@@ -48,13 +42,13 @@ pub(super) fn of_error(arm: &str, error: Met, max_error: f64) -> Option<String> 
 
 pub(super) fn of_follower(arm: &str, straying: &Straying) -> String {
     let Straying { joint, driver, multiplier, offset, apart } = straying;
-    let (apart, t) = (Met { value: apart.value.abs(), ..*apart }, moment(apart.t));
+    let (distance, t) = (short(apart.value.abs()), moment(apart.t));
     let rule = if *offset == 0.0 {
         format!("{} {driver}", short(*multiplier))
     } else {
         format!("{} {driver} + {}", short(*multiplier), short(*offset))
     };
-    format!("{arm}.{joint}: follows {driver} but is {} away from {rule} at t = {t} s", short(apart.value))
+    format!("{arm}.{joint}: follows {driver} but is {distance} away from {rule} at t = {t} s")
 }
 
 /// What failed of an arm's joints.

@@ -4,8 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::super::output::Show;
-use super::sentences::moment;
+use super::super::output::{Show, moment};
 use kinstep::planner::LimitKind;
 use kinstep_files::trajectory::{
     Course, Crossing, Disagreement, Interpolation, JointFigures, Met, Straying, TimeFigures,

@@ -2,7 +2,7 @@
 
 use super::csv_layout::{Layout, Role};
 use super::csv_records::Field;
-use super::error::Problem;
+use super::error::{Problem, excerpt};
 use super::quantity::Quantity;
 use super::times::Times;
 use super::{ReadOptions, Trajectory};
@@ -221,9 +221,8 @@ fn number(
         }
         Err(_) if text.is_empty() => Err(Problem::at(field.at, format!("a gap: the {name} is missing"))),
         Err(_) => {
-            let shown: String = text.chars().take(40).collect();
             let hint = if text.starts_with(['[', '(']) { "; a cell has one number" } else { "" };
-            let shown = shown.escape_debug();
+            let shown = excerpt(text);
             Err(Problem::at(field.at, format!("the {name} is not a number: `{shown}`{hint}")))
         }
     }

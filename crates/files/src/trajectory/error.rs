@@ -101,3 +101,9 @@ impl Problem {
         }
     }
 }
+
+/// Returns the beginning of a text that is not what it should be, as it can be shown.
+pub(super) fn excerpt(text: &str) -> String {
+    let shown: String = text.chars().take(40).collect();
+    shown.escape_debug().to_string()
+}

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::error::Problem;
+use super::error::{Problem, excerpt};
 use super::points::Points;
 
 /// A node of a document, and the byte at which it begins.
@@ -76,8 +76,8 @@ impl<'t> Node<'t> {
     }
 
     fn no_number(&self) -> Problem {
-        let shown: String = self.text().unwrap_or_default().chars().take(40).collect();
-        Problem::at(self.at(), format!("`{}` is not a finite number", shown.escape_debug()))
+        let shown = excerpt(self.text().unwrap_or_default());
+        Problem::at(self.at(), format!("`{shown}` is not a finite number"))
     }
 
     /// The keys of a map.

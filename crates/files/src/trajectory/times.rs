@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use super::error::excerpt;
+
 /// Ticks in one of a unit: nine decimals are kept of what is written.
 const TICKS: i128 = 1_000_000_000;
 /// The first time \[s\] that is taken for a date: three years.
@@ -223,10 +225,7 @@ fn number(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() => Ok(value),
         Ok(value) => Err(format!("the time is {value}, which is not a finite number")),
         Err(_) if text.is_empty() => Err("a gap: the time is missing".to_owned()),
-        Err(_) => {
-            let shown: String = text.chars().take(40).collect();
-            Err(format!("the time is not a number: `{}`", shown.escape_debug()))
-        }
+        Err(_) => Err(format!("the time is not a number: `{}`", excerpt(text))),
     }
 }
 

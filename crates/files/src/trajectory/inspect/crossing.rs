@@ -62,7 +62,8 @@ impl Beyond {
         }
     }
 
-    /// Takes what happens over one step, whose values have these bounds: at its ends known but for the rounding `slacks[0]`, between them for `slacks[1]`.
+    /// Takes what happens over one step, whose values have these bounds: at its ends known but for the rounding `slacks[0]`,
+    /// between them for `slacks[1]`.
     pub(super) fn take(&mut self, segment: &Segment, [least, largest]: [f64; 2], slacks: [f64; 2]) {
         if !(self.excess(least) > 0.0 || self.excess(largest) > 0.0) {
             return;
@@ -100,6 +101,11 @@ impl Beyond {
             found.worst = worst;
         }
         self.found = Some(found);
+    }
+
+    /// What is limited; nothing where there is no limit.
+    pub(super) fn limited(&self) -> Option<LimitKind> {
+        self.limit.is_finite().then_some(self.kind)
     }
 
     fn excess(&self, value: f64) -> f64 {

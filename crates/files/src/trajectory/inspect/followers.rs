@@ -25,7 +25,8 @@ pub struct Straying {
 
 impl ArmTrajectory {
     /// Returns the same with the joints of the robot that follow one of its joints and are not in it, moved by
-    /// `q = multiplier * driver + offset`, and those that are in it but stand elsewhere, at samples or between them: further than 0.01 rad or 1 mm.
+    /// `q = multiplier * driver + offset`, and those that are in it but stand elsewhere, at
+    /// samples or between them: further than 0.01 rad or 1 mm.
     pub fn with_followers(
         &self,
         robot: &Robot,
@@ -37,11 +38,7 @@ impl ArmTrajectory {
         for (follower, driver, multiplier, offset) in followers(robot) {
             let Some(driven_by) = place(&driver.name) else { continue };
             let Some(own) = place(&follower.name) else {
-                all.append(&follower.name, |arm, values, is_position| {
-                    let offset = if is_position { offset } else { 0.0 };
-                    let of_driver = values.iter().skip(driven_by).step_by(arm.joints.len());
-                    of_driver.map(|value| multiplier * value + offset).collect()
-                });
+                all.append(&follower.name, driven_by, multiplier, offset);
                 continue;
             };
             let between =
@@ -60,17 +57,17 @@ impl ArmTrajectory {
         (all, straying)
     }
 
-    /// Appends a joint whose values are made of those of all joints, sample after sample.
-    fn append(&mut self, joint: &str, made: impl Fn(&Self, &[f64], bool) -> Vec<f64>) {
+    /// Appends a joint that stands at `multiplier * driver + offset`, with the driver's place.
+    fn append(&mut self, joint: &str, driver: usize, multiplier: f64, offset: f64) {
         let joints = self.joints.len();
-        let with = |values: &[f64], is_position: bool| -> Vec<f64> {
-            let added = made(self, values, is_position);
-            let rows = values.chunks_exact(joints.max(1)).zip(added);
-            rows.flat_map(|(row, added)| row.iter().copied().chain([added])).collect()
+        let append = |values: &mut Vec<f64>, offset: f64| {
+            let rows = values.chunks_exact(joints);
+            *values =
+                rows.flat_map(|row| row.iter().copied().chain([multiplier * row[driver] + offset])).collect();
         };
-        let positions = with(&self.positions, true);
-        let (velocities, accelerations) = (with(&self.velocities, false), with(&self.accelerations, false));
-        (self.positions, self.velocities, self.accelerations) = (positions, velocities, accelerations);
+        append(&mut self.positions, offset);
+        append(&mut self.velocities, 0.0);
+        append(&mut self.accelerations, 0.0);
         self.joints.push(joint.to_owned());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use super::resolution::resolution;
+use super::resolution::{resolution, written};
 use super::segment::Segment;
 use crate::trajectory::ArmTrajectory;
 
@@ -85,9 +85,9 @@ impl<'t> Knots<'t> {
         }
     }
 
-    /// The same, with positions that are known no better than to this step: that of encoders like its own.
+    /// The same, with positions that are known no better than to this step: that of its own encoder, or of a coarser one like it.
     pub(super) fn known_to(self, step: f64) -> Self {
-        let resolution = OnceCell::from(self.resolution().max(step));
+        let resolution = OnceCell::from(written(&self.positions).max(step));
         Self { resolution, ..self }
     }
 

@@ -38,8 +38,8 @@ pub struct JointFigures {
     pub jerk: Met,
     /// Steps that no arm can take.
     pub jumps: Vec<Jump>,
-    /// Declared velocities that are not those of the positions, and accelerations that are not those of the velocities; `None` where that can not be told: none are
-    /// declared, or the samples are more than 0.05 s apart.
+    /// Declared velocities that are not those of the positions, and accelerations that are not those of the velocities; `None`
+    /// where that can not be told: none are declared, or the samples are more than 0.05 s apart.
     pub disagreements: Option<Vec<Disagreement>>,
     /// Whether the joint rests at the start, and at the end.
     pub rests: [Rest; 2],
@@ -91,16 +91,18 @@ struct Inspection<'k> {
     beyond: [[Beyond; 2]; 4],
     /// What single or double precision makes of the positions.
     precision: f64,
-    limits: [f64; 4],
 }
 
 impl<'k> Inspection<'k> {
     fn of(knots: &'k Knots<'k>, interpolation: Interpolation, limits: &Limits) -> Self {
         let first = Met { value: knots.positions[0], t: knots.times[0] };
-        let sizes = [limits.upper, limits.velocity, limits.acceleration, limits.jerk];
-        let kinds = [LimitKind::Position, LimitKind::Velocity, LimitKind::Acceleration, LimitKind::Jerk];
-        let mut beyond = [0, 1, 2, 3].map(|order| Beyond::both(kinds[order], [-sizes[order], sizes[order]]));
-        beyond[0] = Beyond::both(LimitKind::Position, [limits.lower, limits.upper]);
+        let either = |kind: LimitKind, size: f64| Beyond::both(kind, [-size, size]);
+        let beyond = [
+            Beyond::both(LimitKind::Position, [limits.lower, limits.upper]),
+            either(LimitKind::Velocity, limits.velocity),
+            either(LimitKind::Acceleration, limits.acceleration),
+            either(LimitKind::Jerk, limits.jerk),
+        ];
         let mut inspection = Self {
             knots,
             interpolation,
@@ -108,7 +110,6 @@ impl<'k> Inspection<'k> {
             largest: [Met { value: 0.0, t: knots.times[0] }; 3],
             beyond,
             precision: precision(&knots.positions),
-            limits: sizes,
         };
         for n in 0..knots.steps() {
             inspection.take(n);
@@ -209,12 +210,10 @@ impl<'k> Inspection<'k> {
 
     /// Limits that are known and not found to be crossed, of derivatives that step at the samples.
     fn undecided(&self, crossings: &[Crossing]) -> Vec<LimitKind> {
-        let kinds = [LimitKind::Position, LimitKind::Velocity, LimitKind::Acceleration, LimitKind::Jerk];
         let is_crossed = |kind: LimitKind| crossings.iter().any(|crossing| crossing.kind == kind);
-        (self.declared() + 2..4)
-            .filter(|&order| self.limits[order].is_finite() && !is_crossed(kinds[order]))
-            .map(|order| kinds[order])
-            .collect()
+        let stepping = self.beyond.iter().skip(self.declared() + 2);
+        let limited = stepping.filter_map(|[_, above]| above.limited());
+        limited.filter(|kind| !is_crossed(*kind)).collect()
     }
 }
 

@@ -6,10 +6,15 @@ const MOST: f64 = 4.0;
 /// Returns what noise may do to one of the values: four times their usual second difference, where third differences are larger
 /// than second ones. Of a smooth motion that is sampled closely they are smaller: then it is nothing.
 pub(super) fn noise(values: &[f64]) -> f64 {
-    let bends: Vec<f64> = values.windows(3).map(|v| v[2] - 2.0 * v[1] + v[0]).collect();
-    let turns: Vec<f64> = bends.windows(2).map(|bend| bend[1] - bend[0]).collect();
-    let [second, third] = [bends, turns].map(median);
+    let [second, third] = higher_differences(values).map(median);
     if third > second { MOST * second } else { 0.0 }
+}
+
+/// Returns the second and the third differences of values.
+pub(super) fn higher_differences(values: &[f64]) -> [Vec<f64>; 2] {
+    let second: Vec<f64> = values.windows(3).map(|v| v[2] - 2.0 * v[1] + v[0]).collect();
+    let third = second.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    [second, third]
 }
 
 fn median(values: Vec<f64>) -> f64 {

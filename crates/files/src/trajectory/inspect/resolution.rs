@@ -1,5 +1,7 @@
 //! How finely a file knows its values.
 
+use super::noise::higher_differences;
+
 /// How many decimals count as a rounding: fewer are round numbers that somebody chose, more are those of doubles.
 const DECIMALS: std::ops::RangeInclusive<i32> = 2..=9;
 /// The largest step of an encoder [rad or m].
@@ -10,7 +12,12 @@ const WHOLE: f64 = 0.01;
 /// Returns the largest step in which all of the values can have been rounded: a decimal, that of a single-precision number,
 /// or that of an encoder; zero where there is none.
 pub(super) fn resolution(values: &[f64]) -> f64 {
-    decimal(values).max(single(values)).max(encoder(values))
+    written(values).max(encoder(values))
+}
+
+/// Returns the larger of the two roundings that a file makes: a decimal, and that of a single-precision number.
+pub(super) fn written(values: &[f64]) -> f64 {
+    decimal(values).max(single(values))
 }
 
 /// Returns what single precision, or else double, makes of values as large as these.
@@ -49,9 +56,9 @@ pub(super) fn encoder(values: &[f64]) -> f64 {
 
 /// Whether third differences are larger, all in all, than second ones.
 fn wavers(values: &[f64]) -> bool {
-    let bends: Vec<f64> = values.windows(3).map(|v| v[2] - 2.0 * v[1] + v[0]).collect();
-    let turns: f64 = bends.windows(2).map(|bend| (bend[1] - bend[0]).abs()).sum();
-    turns > bends.iter().map(|bend| bend.abs()).sum()
+    let [second, third] =
+        higher_differences(values).map(|values| values.into_iter().map(f64::abs).sum::<f64>());
+    third > second
 }
 
 #[cfg(test)]
