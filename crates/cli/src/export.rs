@@ -41,8 +41,9 @@ pub(super) fn run(arguments: &ExportArguments, output: &mut Output) -> Result<Ex
     if let Some(stopped) = Stopped::check(&arguments.trajectory)? {
         output.aside(&printable(&stopped.sentence));
     }
-    let Loaded { mut trajectory, stage, notes, joints } =
+    let Loaded { mut trajectory, stage, mut notes, joints } =
         load(&arguments.trajectory, &arguments.robot, None, &arguments.reading)?;
+    notes.extend(left_out(&trajectory, &stage));
     let warnings = units::questions(&trajectory, &joints);
     output.remarks(&notes, &warnings);
     in_order_of(&mut trajectory, &stage);
@@ -155,8 +156,7 @@ fn staged(trajectory: &Trajectory, robot: &TrajectoryRobot) -> Result<Stage, Fai
     let read = source.read(&UrdfOptions::default()).map_err(|e| source.refusal(&e))?;
     let refuse = |message: String| Failure::new(Exit::Robot, message).in_file(reference);
     let chain = read.chain(base, tip).map_err(|e| refuse(e.to_string()))?;
-    let names: Vec<&str> = chain.joints().iter().map(|joint| joint.name.as_str()).collect();
-    check_joints(arm, &names, reference)?;
+    check_joints(arm, &chain, &read, reference)?;
     let machine = Machine {
         urdf: source.urdf(),
         folder: source.folder(),
@@ -167,16 +167,31 @@ fn staged(trajectory: &Trajectory, robot: &TrajectoryRobot) -> Result<Stage, Fai
     Ok(Stage { machines: vec![machine], arms: vec![staged] })
 }
 
-/// Refuses a trajectory that moves other joints than a chain has.
-fn check_joints(arm: &ArmTrajectory, chain: &[&str], robot: &str) -> Result<(), Failure> {
-    arm.joints.iter().try_for_each(|joint| check_joint(joint, chain, robot))?;
-    match chain.iter().find(|name| !arm.joints.iter().any(|own| own == *name)) {
+/// Refuses a trajectory that moves joints that a robot does not have, or lacks one of a chain.
+fn check_joints(arm: &ArmTrajectory, chain: &Chain, robot: &Robot, reference: &str) -> Result<(), Failure> {
+    let movable = robot.joints().iter().filter(|joint| joint.kind.is_movable());
+    let known: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();
+    arm.joints.iter().try_for_each(|joint| check_joint(joint, &known, reference))?;
+    match chain.joints().iter().find(|joint| !arm.joints.contains(&joint.name)) {
         Some(missing) => {
-            let message = format!("the trajectory does not have joint `{missing}` of the chain");
-            Err(Failure::new(Exit::Robot, message).in_file(robot))
+            let message = format!("the trajectory does not have joint `{}` of the chain", missing.name);
+            Err(Failure::new(Exit::Robot, message).in_file(reference))
         }
         None => Ok(()),
     }
+}
+
+/// What is said of the joints that move in a trajectory and are none of its arm's, such as those of a gripper.
+fn left_out(trajectory: &Trajectory, stage: &Stage) -> Vec<String> {
+    let of_arm = |arm: &ArmTrajectory| {
+        let chain = &stage.arm(&arm.name)?.chain;
+        let is_other = |joint: &&String| chain.joints().iter().all(|own| own.name != **joint);
+        let others: Vec<String> =
+            arm.joints.iter().filter(is_other).map(|joint| format!("`{joint}`")).collect();
+        let sentence = || format!("left out, because no joint of the arm: {}", others.join(", "));
+        (!others.is_empty()).then(sentence)
+    };
+    trajectory.arms.iter().filter_map(of_arm).collect()
 }
 
 /// Refuses a joint that is not among the known ones, with the nearest of them.
@@ -193,12 +208,12 @@ pub(super) fn unknown_joint(joint: &str, known: &[&str], whose: &str) -> Failure
     Failure::new(Exit::Robot, format!("the trajectory moves `{joint}`, which is no joint of {whose}; {hint}"))
 }
 
-/// Puts the joints of every arm into the order of its chain.
+/// Takes the joints of the chain of every arm, in its order.
 pub(super) fn in_order_of(trajectory: &mut Trajectory, stage: &Stage) {
     for arm in &mut trajectory.arms {
         if let Some(staged) = stage.arm(&arm.name) {
             let order: Vec<&str> = staged.chain.joints().iter().map(|joint| joint.name.as_str()).collect();
-            *arm = arm.in_order(&order);
+            *arm = arm.with_joints(&order);
         }
     }
 }

@@ -251,7 +251,14 @@ fn coarsest(ladder: &Ladder) -> impl Iterator<Item = DoubleDouble> {
 /// The largest entry of the solution over the whole run.
 fn magnitude(equations: &Equations, ladder: &Ladder) -> Result<f64, String> {
     let mut integrator = Extrapolation::new(equations, ROUGHLY, 0.0);
+    let mut f = vec![DoubleDouble::zero(); integrator.state.len()];
     for t in coarsest(ladder) {
+        // A state that rests at exactly zero has no size to judge its first step by: that of where it is about to go has.
+        integrator.field.evaluate(t, &integrator.state, &mut f, &mut []);
+        let reach = size(&f) * ladder.duration();
+        if reach.is_finite() {
+            integrator.floor = integrator.floor.max(reach);
+        }
         integrator.go_to(t)?;
     }
     Ok(integrator.scale)
@@ -321,6 +328,8 @@ struct Extrapolation<F> {
     tolerance: f64,
     /// The largest entry of the solution, as far as it is known.
     scale: f64,
+    /// What errors are judged by at least.
+    floor: f64,
     /// The largest entry at the start.
     initial: f64,
     /// The finest gap of the runs \[s\], and where the right-hand side was first seen to be rough on that scale.
@@ -341,6 +350,7 @@ impl Extrapolation<kinstep::integrate::EquationField<DoubleDouble>> {
             state,
             tolerance,
             scale: scale.max(initial),
+            floor: 0.0,
             initial,
             finest: 0.0,
             rough: None,
@@ -413,7 +423,7 @@ impl Extrapolation<kinstep::integrate::EquationField<DoubleDouble>> {
             }
             if column > 0 {
                 let error = distance(&row[column], &row[column - 1]);
-                let scale = self.scale.max(size(&row[column]));
+                let scale = self.scale.max(self.floor).max(size(&row[column]));
                 if error <= self.tolerance * scale.max(f64::MIN_POSITIVE) {
                     return row.pop();
                 }
@@ -500,6 +510,17 @@ mod tests {
         assert!(found.trouble.is_none() && found.uncertainty < 1e-26 && found.rough.is_none());
         let pairs = exact.states.iter().flatten().zip(found.states.iter().flatten());
         assert!(pairs.into_iter().all(|(&a, &b)| (a - b).to_f64().abs() < 1e-28));
+    }
+
+    #[test]
+    fn a_state_that_rests_at_zero_and_is_kicked_later_is_followed() {
+        let kicked = equations(&["x' = max(sign(t - 1.01), 0)"], &["x = 0"], &["x = max(t - 1.01, 0)"]);
+        let ladder = Ladder::halvings(2.0, 16, 3).unwrap();
+        let (exact, found) =
+            (Reference::exact(&kicked, &ladder).unwrap(), Reference::extended(&kicked, &ladder, 1e-26));
+        assert!(found.trouble.is_none(), "{:?}", found.trouble);
+        let pairs = exact.states.iter().flatten().zip(found.states.iter().flatten());
+        assert!(pairs.into_iter().all(|(&a, &b)| (a - b).to_f64().abs() < 1e-22));
     }
 
     #[test]

@@ -101,6 +101,11 @@ fn a_lone_table_gets_a_robot_and_its_joints_are_known() {
     assert_eq!(bag.arms[0].position(0), [0.1, 0.2, 0.3, 0.4]);
     assert_eq!(bag.arms[0].joints, ["j1", "j2", "j3", "j4"]);
     desk.run(&["export", "a.csv", "--format", "npz"]).expect(0);
+    let shorter = ["export", "a.csv", "--format", "csv", "--out", "short"];
+    let run = desk.run(&[&shorter[..], &["--robot", "planar4", "--base", "base", "--tip", "link3"]].concat());
+    assert!(run.expect(0).err.contains("left out, because no joint of the arm: `j4`"));
+    let short = Trajectory::read(desk.path("short/trajectory.csv")).unwrap();
+    assert_eq!(short.arms[0].joints, ["j1", "j2", "j3"]);
     let error = desk.run(&["check", "b.csv", "--robot", "planar4"]).expect(3);
     assert!(error.err.contains("did you mean"), "{}", error.err);
     desk.run(&["check", "a.csv"]).expect(2);

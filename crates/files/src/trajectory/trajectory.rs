@@ -46,14 +46,6 @@ impl ArmTrajectory {
         &self.positions[n * joints..(n + 1) * joints]
     }
 
-    /// Returns the same with the joints in that order, where they are the same joints; unchanged where they are not.
-    #[must_use]
-    pub fn in_order(&self, joints: &[&str]) -> Self {
-        let ordered = self.with_joints(joints);
-        let is_same = [ordered.joints.len(), joints.len()] == [self.joints.len(); 2];
-        if is_same { ordered } else { self.clone() }
-    }
-
     /// Returns the same with those of its joints that are named, in the order of the names.
     #[must_use]
     pub fn with_joints(&self, joints: &[&str]) -> Self {
