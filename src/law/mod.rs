@@ -19,7 +19,9 @@ mod stacked;
 #[cfg(test)]
 mod trial;
 
-pub use criterion::{CRITERIA, Criterion, CriterionKind, MakeCriterion, Posture};
+pub use criterion::{
+    CRITERIA, Criterion, CriterionKind, JointLimits, MakeCriterion, Manipulability, Posture,
+};
 pub use infeasible::{Conflict, Infeasible, LimitKind};
 pub use instant::{Instant, JointVelocity, NextState};
 pub use law::{Law, LinearityKind, Resolution};

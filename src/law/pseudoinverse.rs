@@ -76,7 +76,7 @@ impl Pseudoinverse {
 
 impl Law for Pseudoinverse {
     fn prepare(&mut self, shape: &SystemShape) {
-        let thresholds = shape.tasks.iter().map(|task| default_threshold(task.length, task.mixes_units));
+        let thresholds = shape.tasks.iter().map(|task| default_threshold(task.length, task.has_angles()));
         self.threshold = self.given_threshold.unwrap_or_else(|| thresholds.fold(0.0, f64::max));
         for criterion in &mut self.criteria {
             criterion.prepare(shape);
