@@ -1,7 +1,9 @@
 use super::damping::{DampedInverse, default_threshold, is_regular};
 use super::fixed_rows::FixedRows;
 use super::stacked::StackedRows;
-use super::{Criterion, Infeasible, Instant, JointVelocity, Law, LawKind, MakeLaw, Resolution, SystemShape};
+use super::{
+    Criteria, Criterion, Infeasible, Instant, JointVelocity, Law, LawKind, MakeLaw, Resolution, SystemShape,
+};
 use crate::kind::{Form, Kind, Parameter};
 use crate::math::RowRotations;
 use crate::task::TaskRows;
@@ -71,6 +73,16 @@ impl Pseudoinverse {
     pub fn with_criterion(mut self, criterion: impl Criterion + 'static) -> Self {
         self.criteria.push(Box::new(criterion));
         self
+    }
+
+    /// The law with these criteria.
+    pub(super) fn with_criteria(criteria: Criteria) -> Self {
+        Self { criteria, ..Self::default() }
+    }
+
+    /// The sum `c` of what the criteria asked for last.
+    pub(super) fn pull(&self) -> &[f64] {
+        self.workspace.as_ref().map_or(&[], |workspace| &workspace.c)
     }
 }
 
