@@ -156,6 +156,13 @@ impl JointRanges {
         self.kinds[joint][usize::from(is_upper)]
     }
 
+    /// Takes back what rounding left a velocity outside.
+    pub(super) fn clamp(&self, velocity: &mut [f64]) {
+        for (velocity, (lower, upper)) in velocity.iter_mut().zip(self.lower.iter().zip(&self.upper)) {
+            *velocity = velocity.clamp(*lower, *upper);
+        }
+    }
+
     /// Whether a velocity of every joint lies within.
     pub(super) fn contains(&self, velocity: &[f64]) -> bool {
         let mut all = velocity.iter().zip(&self.lower).zip(&self.upper);
