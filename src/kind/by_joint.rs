@@ -37,7 +37,9 @@ impl ByJoint {
         };
         match self {
             Self::All(number) => Some(*number),
-            Self::Named(entries) => entries.iter().find(|(name, _)| is_meant(name)).map(|(_, number)| *number),
+            Self::Named(entries) => {
+                entries.iter().find(|(name, _)| is_meant(name)).map(|(_, number)| *number)
+            }
         }
     }
 

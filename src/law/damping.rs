@@ -37,11 +37,6 @@ impl<'a> DampedInverse<'a> {
     /// Writes the damped inverse applied to `v`.
     pub(super) fn apply(&self, v: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.add(v, out);
-    }
-
-    /// Adds the damped inverse applied to `v`.
-    pub(super) fn add(&self, v: &[f64], out: &mut [f64]) {
         self.rotations.apply(v, |s| s / (s * s + self.damping), out);
     }
 

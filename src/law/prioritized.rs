@@ -1,5 +1,5 @@
 use super::criteria_sum::CriteriaSum;
-use super::damping::{DampedInverse, default_threshold};
+use super::damping::default_threshold;
 use super::task_stack::{TaskStack, dot};
 use super::{
     Criteria, Criterion, Infeasible, Instant, JointVelocity, Law, LawKind, MakeLaw, Resolution, SystemShape,
@@ -8,12 +8,16 @@ use crate::kind::Kind;
 use crate::math::RowRotations;
 use std::ops::Range;
 
+/// Singular values below this fraction of the longest row are rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// A stack of tasks: what comes first is met first, and each further task as well as those before it leave it free.
 ///
 /// With the tasks of one priority as the rows `J_k q' = v_k`, level after level (Siciliano and Slotine 1991, with the projectors of
 /// Baerlocher and Boulic 1998): `q'_k = q'_(k-1) + (J_k P_(k-1))^+ (v_k - J_k q'_(k-1))` and `P_k = P_(k-1) - (J_k P_(k-1))^+ (J_k
-/// P_(k-1))`, from `q'_0 = 0` and `P_0 = I`; the null-space criteria come last, `q' = q'_m + P_m c`. Every inverse is damped near its
-/// own singularities, as that of [`Pseudoinverse`](super::Pseudoinverse) is; projectors never are. A task of a lower level whose rows
+/// P_(k-1))`, from `q'_0 = 0` and `P_0 = I`; the null-space criteria come last, `q' = q'_m + P_m c`. In every
+/// inverse a singular value `s` below the threshold `epsilon` counts as `s / epsilon^2` instead of `1 / s` (numerical filtering,
+/// Maciejewski and Klein 1988); projectors are never damped. A task of a lower level whose rows
 /// the levels before it take has them missing: that is said in the plan and stops no run.
 ///
 /// ```
@@ -78,15 +82,21 @@ impl Prioritized {
 /// The rows of the tasks of each priority, in the order of these.
 fn levels(shape: &SystemShape) -> Vec<Vec<usize>> {
     let mut first = 0;
-    let spans: Vec<(usize, Range<usize>)> = shape.tasks.iter().map(|task| {
-        let rows = first..first + task.rows();
-        first = rows.end;
-        (task.priority, rows)
-    }).collect();
+    let spans: Vec<(usize, Range<usize>)> = shape
+        .tasks
+        .iter()
+        .map(|task| {
+            let rows = first..first + task.rows();
+            first = rows.end;
+            (task.priority, rows)
+        })
+        .collect();
     let mut priorities: Vec<usize> = spans.iter().map(|(priority, _)| *priority).collect();
     priorities.sort_unstable();
     priorities.dedup();
-    let rows = |level: usize| spans.iter().filter(move |(priority, _)| *priority == level).flat_map(|(_, rows)| rows.clone());
+    let rows = |level: usize| {
+        spans.iter().filter(move |(priority, _)| *priority == level).flat_map(|(_, rows)| rows.clone())
+    };
     priorities.into_iter().map(|level| rows(level).collect()).collect()
 }
 
@@ -118,12 +128,21 @@ impl Level {
         self.rotations.compute(joints, |row, joint| projected[row * joints + joint]);
     }
 
-    /// Adds what the level asks for beyond what `velocity` does already.
+    /// Adds what the level asks for beyond what `velocity` does already: directions below the threshold are damped one by one,
+    /// and what is nothing but rounding is left out, so that nothing leaks into the levels before.
     fn add(&mut self, stack: &TaskStack, asked: &[f64], threshold: f64, velocity: &mut [f64]) {
+        let mut size = 0.0_f64;
         for (rest, &row) in self.rest.iter_mut().zip(&self.rows) {
             *rest = asked[row] - dot(stack.row(row), velocity);
+            size = size.max(dot(stack.row(row), stack.row(row)));
         }
-        DampedInverse::new(&self.rotations, threshold).add(&self.rest, velocity);
+        let least = ROUNDING * size.sqrt();
+        let weight = |s: f64| match s {
+            s if s <= least => 0.0,
+            s if s < threshold => s / (threshold * threshold),
+            s => s.recip(),
+        };
+        self.rotations.apply(&self.rest, weight, velocity);
     }
 
     /// Takes from the projector the directions that the level moves, and returns how many of its rows are missing.
@@ -174,7 +193,9 @@ impl Law for Prioritized {
             level.add(&self.stack, &self.stack.feedback, self.threshold, velocity.feedback);
             let missing = level.take_from(&mut self.projector, self.threshold, joints);
             if place == 0 {
-                resolution = DampedInverse::new(&level.rotations, self.threshold).resolution();
+                let smallest = level.rotations.smallest();
+                resolution.smallest_singular_value = smallest;
+                resolution.damped = smallest < self.threshold;
             }
             resolution.missing_rows += missing;
         }

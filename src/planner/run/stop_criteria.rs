@@ -184,8 +184,7 @@ fn names_of_rows(system: &System, conflicts: &[Conflict]) -> Vec<String> {
     let mut names: Vec<String> = conflicts.iter().filter_map(limit).collect();
     for (task, shape) in shape.tasks.iter().enumerate() {
         let is_meant = |row: &usize| conflicts.contains(&Conflict::Task { task, row: *row });
-        let rows: Vec<String> =
-            (0..shape.rows()).filter(is_meant).map(|row| (row + 1).to_string()).collect();
+        let rows: Vec<String> = (0..shape.rows()).filter(is_meant).map(|row| (row + 1).to_string()).collect();
         if rows.len() == shape.rows() {
             names.push(format!("task `{}`", shape.name));
         } else if let [only] = &rows[..] {

@@ -358,12 +358,7 @@ pub(super) fn read_robot(
     Ok((source, robot))
 }
 
-fn chain(
-    at: &KeyPath,
-    spec: &ArmSpec,
-    law: &LawSpec,
-    folder: Option<&Path>,
-) -> Result<Chain, ScenarioError> {
+fn chain(at: &KeyPath, spec: &ArmSpec, law: &LawSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
     let (source, robot) = read_robot(at, spec, folder)?;
     let (robot, tip) = spec.tooled(at, spec.changed(at, robot, law, folder)?)?;
     let chain = robot.chain(&spec.base, &tip).map_err(|e| {

@@ -79,7 +79,9 @@ fn form(parameter: &Parameter) -> Value {
         Form::Vectors => list(of_length(real, 3, 3)),
         Form::Text => json!({ "type": "string" }),
         Form::OneOf(words) => json!({ "type": "string", "enum": words }),
-        Form::ByJoint { .. } => json!({ "anyOf": [real, { "type": "object", "additionalProperties": real }] }),
+        Form::ByJoint { .. } => {
+            json!({ "anyOf": [real, { "type": "object", "additionalProperties": real }] })
+        }
         Form::Flag => json!({ "type": "boolean" }),
     }
 }

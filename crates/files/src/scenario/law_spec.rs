@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::criterion_spec::CriterionSpec;
 use super::check::refuse;
+use super::criterion_spec::CriterionSpec;
 use super::error::{ScenarioError, suggestion};
 use super::key_path::KeyPath;
 use super::kind_reader::{KindTable, Misread, named};
@@ -161,7 +161,12 @@ impl LawSpec {
 }
 
 fn law_table<'a>(at: &'a KeyPath, kinds: &'a Kinds, kind: &'a str) -> KindTable<'a, MakeLaw> {
-    KindTable { at, kinds: &kinds.laws, kind, keys: [&["kind", "h", "gain", ACCELERATION_LIMIT.name], &["criterion"]] }
+    KindTable {
+        at,
+        kinds: &kinds.laws,
+        kind,
+        keys: [&["kind", "h", "gain", ACCELERATION_LIMIT.name], &["criterion"]],
+    }
 }
 
 fn criterion_table<'a>(at: &'a KeyPath, kinds: &'a Kinds, kind: &'a str) -> KindTable<'a, MakeCriterion> {
