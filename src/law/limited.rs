@@ -1,8 +1,8 @@
 use super::joint_ranges::JointRanges;
 use super::task_stack::TaskStack;
 use super::{
-    Conflict, Criteria, Criterion, Infeasible, Instant, JointVelocity, Law, LinearityKind, Pseudoinverse,
-    Resolution, SystemShape,
+    Conflict, Criteria, Criterion, Infeasible, Instant, JointVelocity, Law, Pseudoinverse, Resolution,
+    SystemShape,
 };
 use crate::math::{Constraint, LeastDistance, NoSolution};
 
@@ -29,7 +29,8 @@ pub trait RangeMethod: Send {
 /// It decides about minimise `1/2 |q' - c|^2` subject to `J q' = phi' - k e` and `lower <= q' <= upper`, where `c` is what the
 /// null-space criteria ask for. The bounds keep the limits of positions, velocities and accelerations, of the velocity itself
 /// and of the sample that it leads to; all arms that are resolved together are one problem. While no limit is active the answer
-/// is that of [`Pseudoinverse`], to the last bit. Near a singularity the tasks ask for what the damped inverse gives. Where the
+/// is that of [`Pseudoinverse`], to the last bit; where one is, the feedback part stays what it is there, `-k J^+ e`, so that the
+/// task error falls by the row's `gamma` at all times, and the feedforward part makes room for the limits. Near a singularity the tasks ask for what the damped inverse gives. Where the
 /// tasks can not be met within the limits, the run stops and says which rows are in conflict. A joint that is beyond a limit
 /// comes back.
 #[derive(Default)]
@@ -45,8 +46,10 @@ struct Workspace {
     stack: TaskStack,
     /// What the tasks ask for: what the answer without ranges does.
     values: Vec<f64>,
-    /// The parts of that answer.
-    parts: [Vec<f64>; 2],
+    /// Both parts of the answer together.
+    x: Vec<f64>,
+    /// The feedforward part of the answer.
+    feedforward: Vec<f64>,
 }
 
 impl<M> std::fmt::Debug for Limited<M> {
@@ -84,12 +87,13 @@ impl<M: RangeMethod> Law for Limited<M> {
     fn prepare(&mut self, shape: &SystemShape) {
         self.free.prepare(shape);
         self.method.prepare(shape);
-        let zeros = vec![0.0; shape.joints.len()];
+        let joints = shape.joints.len();
         self.workspace = Workspace {
-            ranges: JointRanges::with_capacity(shape.joints.len()),
+            ranges: JointRanges::with_capacity(joints),
             stack: TaskStack::new(shape),
             values: vec![0.0; shape.rows()],
-            parts: [zeros.clone(), zeros],
+            x: vec![0.0; joints],
+            feedforward: vec![0.0; joints],
         };
     }
 
@@ -99,31 +103,30 @@ impl<M: RangeMethod> Law for Limited<M> {
         velocity: &mut JointVelocity<'_>,
     ) -> Result<Resolution, Infeasible> {
         let workspace = &mut self.workspace;
-        let [f, g] = &mut workspace.parts;
-        let resolution = self.free.resolve(instant, &mut JointVelocity { feedforward: f, feedback: g })?;
-        let x = &mut *velocity.feedforward;
-        for (x, (f, g)) in x.iter_mut().zip(f.iter().zip(&*g)) {
+        let resolution = self.free.resolve(instant, velocity)?;
+        let (f, g) = (&mut *velocity.feedforward, &*velocity.feedback);
+        workspace.ranges.find(instant, g)?;
+        for (x, (f, g)) in workspace.x.iter_mut().zip(f.iter().zip(g)) {
             *x = f + g;
         }
-        velocity.feedback.fill(0.0);
-        workspace.ranges.find(instant)?;
-        if !workspace.ranges.contains(x) {
-            workspace.stack.collect(instant.tasks);
-            workspace.stack.image(x, &mut workspace.values);
-            let solved = self.method.solve(&workspace.problem(self.free.criteria_sum()), x);
+        if !workspace.ranges.contains(&workspace.x) {
+            workspace.prepare_problem(instant);
+            let mut x = std::mem::take(&mut workspace.x);
+            let solved = self.method.solve(&workspace.problem(self.free.criteria_sum()), &mut x);
+            workspace.x = x;
             solved.map_err(|failure| workspace.infeasible(failure, self.method.conflict()))?;
-            workspace.ranges.clamp(x);
+            workspace.ranges.clamp(&mut workspace.x);
+            for (f, (x, g)) in f.iter_mut().zip(workspace.x.iter().zip(g)) {
+                *f = x - g;
+            }
         }
+        workspace.feedforward.copy_from_slice(f);
         Ok(resolution)
     }
 
     fn accept(&mut self, instant: &Instant<'_>) {
         self.free.accept(instant);
-        self.workspace.ranges.accept(instant);
-    }
-
-    fn kind(&self) -> LinearityKind {
-        LinearityKind::Total
+        self.workspace.ranges.accept(instant, &self.workspace.feedforward);
     }
 
     fn needs_next_state(&self) -> bool {
@@ -144,6 +147,12 @@ impl<M: RangeMethod> Law for Limited<M> {
 }
 
 impl Workspace {
+    /// Stacks the tasks, which ask for what the answer without ranges does.
+    fn prepare_problem(&mut self, instant: &Instant<'_>) {
+        self.stack.collect(instant.tasks);
+        self.stack.image(&self.x, &mut self.values);
+    }
+
     fn problem<'a>(&'a self, target: &'a [f64]) -> LeastDistance<'a> {
         LeastDistance {
             target,
