@@ -4,6 +4,9 @@ use crate::robot::Limits;
 /// How fast a joint may still come nearer to a position limit, as a fraction of the way that is left per step: small enough for
 /// every row to come to rest there without passing it.
 const APPROACH: f64 = 0.1;
+/// How much nearer a velocity may come to its limit from one sample to the next, as a fraction of what is left: a velocity that
+/// ran straight into its limit would have the next samples pass it, and stands out in the differences that the rows make.
+const VELOCITY_APPROACH: f64 = 0.25;
 /// What rounding is left of an interval, as a fraction of its bounds.
 const ROUNDING: f64 = 1e-12;
 
@@ -11,7 +14,8 @@ const ROUNDING: f64 = 1e-12;
 /// samples that they lead to.
 ///
 /// A velocity `x = f + g`, of which the feedback part `g` is given, is held to
-/// - `|x| <= v` and `|f| <= v`, and `|f - f_before| <= a sigma` for an acceleration limit `a`;
+/// - `|x| <= v` and `|f| <= v`, which is approached by a fraction of what is left, and `|f - f_before| <= a sigma` for an
+///   acceleration limit `a`;
 /// - `x <= k (upper - q)`, which lets a position limit be approached and not passed, and `x <= sqrt(a^2 sigma^2 + 2 a (upper -
 ///   q)) - a sigma`, from which the joint can still stop;
 /// - the next sample `q' = known + first f + second g` with `q' <= upper`, `|q' - q| <= v sigma` and `|q' - 2 q + q_before| <=
@@ -80,6 +84,10 @@ impl Upwards {
             side = side.at_most(self.towards(left).max(-velocity), LimitKind::Position);
         }
         side = side.at_most(self.leading_to(velocity * self.sigma * (1.0 - ROUNDING)), LimitKind::Velocity);
+        if let Some((before, _)) = self.before.filter(|_| velocity.is_finite()) {
+            let nearer = before + VELOCITY_APPROACH * (velocity - before).max(0.0);
+            side = side.at_most(nearer + self.feedback, LimitKind::Velocity);
+        }
         if let Some((before, position)) = self.before.filter(|_| acceleration.is_finite()) {
             let change = acceleration * self.sigma * (1.0 - ROUNDING);
             side = side.at_most(before + change + self.feedback, LimitKind::Acceleration);
