@@ -5,6 +5,7 @@ mod convergence;
 mod differences;
 mod ensemble;
 mod field;
+mod lost_directions;
 mod noise;
 mod plan;
 mod reachability;
@@ -13,8 +14,9 @@ mod stop_criteria;
 
 pub use convergence::Convergence;
 pub use differences::Peak;
+pub use lost_directions::LostDirection;
 pub use noise::Noise;
-pub use plan::{ArmPlan, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
+pub use plan::{ArmPlan, Plan, PlanStatus, SharedJoints, StackRank, Stop, TaskPlan};
 
 pub(super) use ensemble::Ensemble;
 pub(super) use field::{Evaluated, SynchronousField};

@@ -61,6 +61,8 @@ pub(in crate::planner) struct Monitor {
     pub(in crate::planner) damped_samples: usize,
     pub(in crate::planner) smallest_singular_value: f64,
     pub(in crate::planner) smallest_at: f64,
+    /// How many rows of a stack of tasks could not be met at most, and when.
+    pub(in crate::planner) most_missing_rows: (usize, f64),
     /// The largest rate [1/s] of null-space criteria, and when.
     pub(in crate::planner) largest_rate: (f64, f64),
 }
@@ -103,6 +105,7 @@ impl Monitor {
             damped_samples: 0,
             smallest_singular_value: f64::INFINITY,
             smallest_at: 0.0,
+            most_missing_rows: (0, 0.0),
             largest_rate: (0.0, 0.0),
         }
     }
@@ -182,6 +185,9 @@ impl Monitor {
         if resolution.smallest_singular_value < self.smallest_singular_value {
             self.smallest_singular_value = resolution.smallest_singular_value;
             self.smallest_at = t;
+        }
+        if resolution.missing_rows > self.most_missing_rows.0 {
+            self.most_missing_rows = (resolution.missing_rows, t);
         }
         // A rate that is not a number is none that could be followed.
         if !(resolution.criterion_rate <= self.largest_rate.0) {
