@@ -74,8 +74,9 @@ struct Equation<'a> {
     residual: &'a mut [f64],
     x: &'a mut [f64],
     rate: f64,
-    /// The largest entry of the residual.
+    /// The largest entry of the residual, and the largest sum of what it is the difference of.
     largest: f64,
+    size: f64,
 }
 
 impl Default for RecurrentNetwork {
@@ -155,7 +156,6 @@ impl RangeMethod for RecurrentNetwork {
         let Some(running) = self.running.as_mut().filter(|_| problem.is_sound()) else {
             return Err(NoSolution::NotFinite);
         };
-        let size = problem.values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         let mut equation = Equation {
             problem,
             kind: self.kind,
@@ -165,6 +165,7 @@ impl RangeMethod for RecurrentNetwork {
             x,
             rate: running.rate,
             largest: f64::INFINITY,
+            size: 0.0,
         };
         equation.counted.fill(true);
         equation.decompose();
@@ -174,7 +175,7 @@ impl RangeMethod for RecurrentNetwork {
                 return Err(NoSolution::NotFinite);
             }
             running.stepper.evaluate(&mut equation);
-            if equation.largest <= self.tolerance * size {
+            if equation.largest <= self.tolerance * equation.size {
                 return Ok(());
             }
         }
@@ -203,11 +204,13 @@ impl Field<f64> for Equation<'_> {
         for (x, (lower, upper)) in self.x.iter_mut().zip(ranges) {
             *x = x.max(*lower).min(*upper);
         }
-        self.largest = 0.0;
+        (self.largest, self.size) = (0.0, 0.0);
         let rows = self.problem.equalities.chunks_exact(joints).zip(self.problem.values);
         for (residual, (row, value)) in self.residual.iter_mut().zip(rows) {
             *residual = value - dot(row, self.x);
             self.largest = self.largest.max(residual.abs());
+            let terms = row.iter().zip(&*self.x).map(|(entry, x)| (entry * x).abs());
+            self.size = self.size.max(value.abs() + terms.sum::<f64>());
         }
         if self.kind == NetworkKind::Zeroing && self.recount() {
             self.decompose();

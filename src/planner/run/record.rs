@@ -94,6 +94,7 @@ impl Record {
             }
             let limits = chain.joints().iter().map(|joint| &joint.limits);
             plan.violations.extend(plan.crossed_by_differences(limits, sigma));
+            warnings.extend(return_warning(plan, runtime));
             warnings.extend(damping_warning(plan, runtime.threshold));
             warnings.extend(rate_warning(&plan.name, runtime.monitor.largest_rate, largest_criterion_rate));
         }
@@ -212,6 +213,23 @@ fn steady_maximum(errors: &[Vector6<f64>]) -> f64 {
 fn steady_mean_square(errors: &[Vector6<f64>]) -> f64 {
     let half = &errors[errors.len() / 2..];
     half.iter().map(Vector6::norm_squared).sum::<f64>() / half.len() as f64
+}
+
+/// What became of joints that started outside their position limits.
+fn return_warning(plan: &ArmPlan, runtime: &ArmRuntime) -> Option<String> {
+    let outside: Vec<&str> =
+        runtime.monitor.stayed_outside().map(|joint| plan.joints[joint].as_str()).collect();
+    if !outside.is_empty() {
+        let (arm, joints) = (&plan.name, outside.join("`, `"));
+        return Some(format!(
+            "arm `{arm}` started with `{joints}` outside the position limits and never came back"
+        ));
+    }
+    let returned = runtime.monitor.returned?;
+    Some(format!(
+        "arm `{}` started outside its position limits and was within them from t = {returned:.6} s on",
+        plan.name
+    ))
 }
 
 fn damping_warning(plan: &ArmPlan, threshold: f64) -> Option<String> {
