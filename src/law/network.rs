@@ -305,21 +305,20 @@ mod tests {
     use crate::math::LeastDistanceSolver;
     use proptest::prelude::*;
 
-    /// Every built-in row that can run a network.
-    fn rows() -> Vec<String> {
-        let shape = SystemShape::of_one_task(3, 7, 1.0);
-        let can = |id: &String| RecurrentNetwork::of_row(id).objection(&shape).is_none();
-        FormulaTable::builtin().iter().map(|formula| formula.id().to_owned()).filter(can).collect()
-    }
+    /// Rows of several kinds: of the paper, of one step, of few and of many steps, and a split one.
+    const ROWS: [&str; 5] = ["la6-wang-guo", "la2-euler", "la4-ssp32", "split-ab4", "la8-24"];
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(6))]
+        #![proptest_config(ProptestConfig::with_cases(32))]
 
         #[test]
         fn it_settles_at_the_solution_of_the_quadratic_program_whatever_row_integrates_it(
-            equalities in prop::collection::vec(-1.0..1.0_f64, 21), inside in prop::collection::vec(-0.8..0.8_f64, 7),
-            target in prop::collection::vec(-1.5..1.5_f64, 7), place in any::<prop::sample::Index>(),
+            entries in prop::collection::vec(-0.3..0.3_f64, 21), inside in prop::collection::vec(-0.8..0.8_f64, 7),
+            target in prop::collection::vec(-1.5..1.5_f64, 7), row in prop::sample::select(&ROWS[..]),
         ) {
+            // Far from singular, with whatever is active: how fast it settles is another question.
+            let mut equalities = entries;
+            equalities.iter_mut().step_by(8).for_each(|entry| *entry += 1.0);
             let values: Vec<f64> = equalities.chunks(7).map(|row| dot(row, &inside)).collect();
             let problem = LeastDistance {
                 target: &target,
@@ -332,10 +331,7 @@ mod tests {
             };
             let mut exact = [0.0; 7];
             LeastDistanceSolver::with_capacity(7).solve(&problem, &mut exact).expect("there is a point inside");
-            // The more joints are free, the faster it settles.
-            prop_assume!(exact.iter().filter(|x| x.abs() < 1.0).count() > 4);
-            let rows = rows();
-            let row = &rows[place.index(rows.len())];
+            prop_assume!(exact[..3].iter().all(|x| x.abs() < 1.0));
             let mut network = RecurrentNetwork::of_row(row);
             network.prepare(&SystemShape::of_one_task(3, 7, 1.0));
             let mut x = [0.0; 7];
