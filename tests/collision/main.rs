@@ -1,0 +1,4 @@
+//! Shapes about links and obstacles: distances, fits, files, and how distances change with the joints.
+
+mod distances;
+mod reference;
