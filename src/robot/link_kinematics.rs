@@ -181,6 +181,16 @@ impl LinkKinematics {
         PosedLinks { kinematics: self, scratch }
     }
 
+    /// The links as they were posed last in that memory.
+    pub(crate) fn posed<'a>(&'a self, scratch: &'a LinkScratch) -> PosedLinks<'a> {
+        PosedLinks { kinematics: self, scratch }
+    }
+
+    /// Returns the number of positions that are needed: one more than the largest column that was given.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
     /// Returns whether positions that are given move the link.
     pub fn moves(&self, link: usize) -> bool {
         self.drives(link).next().is_some()

@@ -58,8 +58,11 @@ pub use size::unbelievable;
 pub use tool::ToolError;
 pub use tree::{TreeRow, TreeRows};
 pub use units::{degrees_suspected, millimetres_suspected};
-pub use urdf::{MAX_BYTES, MAX_DEPTH, MAX_JOINTS, UrdfError, UrdfOptions};
+pub use urdf::{DisabledPair, MAX_BYTES, MAX_DEPTH, MAX_JOINTS, Srdf, UrdfError, UrdfOptions};
 pub use visual::{Colour, Mesh, MeshError, MeshPart, Shape, Triangle, Visual, Visuals, find_mesh};
 pub use with_limits::LimitsError;
 
+pub(crate) use diagnostic::summary;
+pub(crate) use report::Report;
 pub(crate) use side_by_side::{SideBySide, SideBySideScratch};
+pub(crate) use toml_table::{Entries, read_toml, wrong_type};
