@@ -107,6 +107,9 @@ impl LinkKinematics {
     ) -> Result<LinkKinematics, ChainError> {
         let mut kinematics =
             LinkKinematics { start: *world_from_base, passes: Vec::new(), ends: Vec::new(), columns: 0 };
+        if let Err(error @ ChainError::UnknownLink { .. }) = path::steps(robot, base, base) {
+            return Err(error);
+        }
         for &link in links {
             let steps = match path::steps(robot, base, link) {
                 Err(ChainError::SameLink { .. }) => Vec::new(),
