@@ -7,8 +7,8 @@ use crate::math::RowRotations;
 const RELATIVE_THRESHOLD: f64 = 1e-3;
 
 /// The threshold of a task that is judged by `length` \[m\]: of at most one metre where angles are asked for too.
-pub(super) fn default_threshold(length: f64, mixes_units: bool) -> f64 {
-    RELATIVE_THRESHOLD * if mixes_units { length.min(1.0) } else { length }
+pub(super) fn default_threshold(length: f64, has_angles: bool) -> f64 {
+    RELATIVE_THRESHOLD * if has_angles { length.min(1.0) } else { length }
 }
 
 /// Whether an undamped inverse may be used: its singular values are certain to lie above the threshold, and it means

@@ -1,5 +1,5 @@
 use crate::robot::Limits;
-use crate::task::TaskRows;
+use crate::task::{TaskRows, Tip};
 
 /// Everything that decides what the joints of a system do at one instant.
 ///
@@ -19,6 +19,8 @@ pub struct Instant<'a> {
     pub limits: &'a [Limits],
     /// The rows of all tasks, each over all `n` joints.
     pub tasks: &'a [TaskRows],
+    /// The tips of the system's arms, in their order, with pose and geometric Jacobian.
+    pub tips: &'a [Tip],
     /// How the next state depends on what is resolved here, if the law [asks for it](super::Law::needs_next_state).
     pub next: Option<NextState<'a>>,
 }

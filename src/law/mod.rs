@@ -9,26 +9,31 @@ mod damping;
 mod fixed_rows;
 mod infeasible;
 mod instant;
+mod joint_ranges;
 #[expect(clippy::module_inception, reason = "the file is named after the trait that it holds")]
 mod law;
 mod law_kind;
 mod least_norm;
 mod pseudoinverse;
+mod quadratic_program;
 mod shape;
 mod stacked;
 #[cfg(test)]
 mod trial;
 
-pub use criterion::{CRITERIA, Criterion, CriterionKind, MakeCriterion, Posture};
+pub use criterion::{
+    CRITERIA, Criterion, CriterionKind, JointLimits, MakeCriterion, Manipulability, Posture,
+};
 pub use infeasible::{Conflict, Infeasible, LimitKind};
 pub use instant::{Instant, JointVelocity, NextState};
 pub use law::{Law, LinearityKind, Resolution};
 pub use law_kind::{Criteria, LawKind, MakeLaw};
 pub use pseudoinverse::Pseudoinverse;
+pub use quadratic_program::QuadraticProgram;
 pub use shape::{SystemShape, TaskShape};
 
 /// Every built-in law; the first is the one that is taken unless another is named.
-pub const LAWS: &[LawKind] = &[pseudoinverse::KIND];
+pub const LAWS: &[LawKind] = &[pseudoinverse::KIND, quadratic_program::KIND];
 
 pub(crate) use damping::is_regular;
 pub(crate) use least_norm::least_norm;

@@ -1,7 +1,9 @@
 use super::damping::{DampedInverse, default_threshold, is_regular};
 use super::fixed_rows::FixedRows;
 use super::stacked::StackedRows;
-use super::{Criterion, Infeasible, Instant, JointVelocity, Law, LawKind, MakeLaw, Resolution, SystemShape};
+use super::{
+    Criteria, Criterion, Infeasible, Instant, JointVelocity, Law, LawKind, MakeLaw, Resolution, SystemShape,
+};
 use crate::kind::{Form, Kind, Parameter};
 use crate::math::RowRotations;
 use crate::task::TaskRows;
@@ -72,11 +74,21 @@ impl Pseudoinverse {
         self.criteria.push(Box::new(criterion));
         self
     }
+
+    /// The law with these criteria.
+    pub(super) fn with_criteria(criteria: Criteria) -> Self {
+        Self { criteria, ..Self::default() }
+    }
+
+    /// The sum `c` of what the criteria asked for last.
+    pub(super) fn pull(&self) -> &[f64] {
+        self.workspace.as_ref().map_or(&[], |workspace| &workspace.c)
+    }
 }
 
 impl Law for Pseudoinverse {
     fn prepare(&mut self, shape: &SystemShape) {
-        let thresholds = shape.tasks.iter().map(|task| default_threshold(task.length, task.mixes_units));
+        let thresholds = shape.tasks.iter().map(|task| default_threshold(task.length, task.has_angles()));
         self.threshold = self.given_threshold.unwrap_or_else(|| thresholds.fold(0.0, f64::max));
         for criterion in &mut self.criteria {
             criterion.prepare(shape);

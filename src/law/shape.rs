@@ -1,3 +1,5 @@
+use crate::task::Component;
+
 /// What stays the same of a system from instant to instant: by it a law allocates what it needs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SystemShape {
@@ -5,6 +7,8 @@ pub struct SystemShape {
     pub joints: Vec<String>,
     /// The tasks, in the order in which an instant has them.
     pub tasks: Vec<TaskShape>,
+    /// How many axes move each of the tips of its arms.
+    pub axes: Vec<usize>,
     /// The sampling gap of the run \[s\].
     pub sigma: f64,
 }
@@ -14,10 +18,10 @@ pub struct SystemShape {
 pub struct TaskShape {
     /// The task's name.
     pub name: String,
-    /// How many rows it has.
-    pub rows: usize,
-    /// Whether some of its rows are angles beside lengths: its singular values then depend on the unit of length.
-    pub mixes_units: bool,
+    /// What each of its rows measures.
+    pub components: Vec<Component>,
+    /// The tips that it is about, by their places among those of the system.
+    pub tips: Vec<usize>,
     /// The length \[m\] by which its singular values are judged: the reach of its tips.
     pub length: f64,
     /// The places of the joints that it may depend on; in all other columns its Jacobian is zero.
@@ -31,8 +35,8 @@ impl SystemShape {
     pub fn of_one_task(rows: usize, joints: usize, length: f64) -> Self {
         let task = TaskShape {
             name: "task".to_owned(),
-            rows,
-            mixes_units: rows == 6,
+            components: Component::ALL.into_iter().cycle().take(rows).collect(),
+            tips: vec![0],
             length,
             joints: (0..joints).collect(),
             priority: 0,
@@ -40,12 +44,25 @@ impl SystemShape {
         Self {
             joints: (0..joints).map(|joint| format!("joint {joint}")).collect(),
             tasks: vec![task],
+            axes: vec![joints],
             sigma: 0.0,
         }
     }
 
     /// How many rows all tasks have together.
     pub fn rows(&self) -> usize {
-        self.tasks.iter().map(|task| task.rows).sum()
+        self.tasks.iter().map(TaskShape::rows).sum()
+    }
+}
+
+impl TaskShape {
+    /// How many rows it has.
+    pub fn rows(&self) -> usize {
+        self.components.len()
+    }
+
+    /// Whether some of its rows are angles.
+    pub fn has_angles(&self) -> bool {
+        self.components.iter().any(|component| component.is_angular())
     }
 }

@@ -140,9 +140,9 @@ fn spans(shape: &SystemShape) -> Vec<Range<usize>> {
     for task in &shape.tasks {
         for &joint in &task.joints {
             let start = spans[joint].as_ref().map_or(first, |span| span.start);
-            spans[joint] = Some(start..first + task.rows);
+            spans[joint] = Some(start..first + task.rows());
         }
-        first += task.rows;
+        first += task.rows();
     }
     spans.into_iter().map(Option::unwrap_or_default).collect()
 }

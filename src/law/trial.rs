@@ -21,8 +21,16 @@ pub(super) fn prepared<L: Law>(mut law: L, rows: usize, joints: usize) -> L {
 pub(super) fn resolve(law: &mut impl Law, q: &[f64], tasks: &[TaskRows]) -> ([Vec<f64>; 2], Resolution) {
     let (mut f, mut g) = (vec![0.0; q.len()], vec![0.0; q.len()]);
     let rest = vec![0.0; q.len()];
-    let instant =
-        Instant { t: 0.0, sigma: 0.01, q, previous_velocity: &rest, limits: &[], tasks, next: None };
+    let instant = Instant {
+        t: 0.0,
+        sigma: 0.01,
+        q,
+        previous_velocity: &rest,
+        limits: &[],
+        tasks,
+        tips: &[],
+        next: None,
+    };
     let mut answer = JointVelocity { feedforward: &mut f, feedback: &mut g };
     let resolution = law.resolve(&instant, &mut answer).expect("a law that always has an answer");
     ([f, g], resolution)

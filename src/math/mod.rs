@@ -18,6 +18,7 @@ mod modular;
 mod number_text;
 mod polynomial;
 mod power;
+mod quadratic_program;
 pub mod random;
 mod rational;
 mod rational_roots;
@@ -40,6 +41,7 @@ pub use factor_degrees::possible_factor_degrees;
 pub use gram::GramCholesky;
 pub use number_text::number_text;
 pub use polynomial::Polynomial;
+pub use quadratic_program::{Constraint, LeastDistance, LeastDistanceSolver, NoSolution, Solved};
 pub use rational::{
     MAX_DIGITS, ParseRationalError, Rational, parse_rational, rational_from_f64, rational_to_f64,
 };

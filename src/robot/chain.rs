@@ -85,6 +85,11 @@ impl Chain {
         self.joints.len()
     }
 
+    /// Returns the number of axes that move: those of its joints, and of joints on the way that follow one of them.
+    pub fn moving_axes(&self) -> usize {
+        self.places.len()
+    }
+
     /// Returns the joints that the pose depends on, one per Jacobian column, in path order. A joint off the path that
     /// moves joints on the path takes the place of the first of them.
     pub fn joints(&self) -> &[ChainJoint] {

@@ -55,6 +55,19 @@ impl Motions {
     }
 }
 
+/// An axis that moves a tip: what a joint does by itself, or makes a joint do that follows it.
+///
+/// The column of a joint in the geometric Jacobian is the sum of the twists of its axes. Axes stand in their order from the
+/// base to the tip, so their derivatives follow from themselves: for an axis `a` before `b` it is
+/// `d twist_b / dq_a = (w_a x v_b; w_a x w_b)`, and for an axis `a` that is `b` or comes after it `(w_b x v_a; 0)`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MovingAxis {
+    /// The place of the joint in the chain.
+    pub joint: usize,
+    /// The twist (linear; angular) of the tip per unit of the joint's motion, in the base's axes.
+    pub twist: Vector6<f64>,
+}
+
 impl<V: Lanes> Frame<V> {
     /// Turns the frame about its own z.
     #[inline(always)]
@@ -186,6 +199,29 @@ impl Kernel for Pass<'_> {
     }
 }
 
+/// The moving axes of a chain that was posed.
+struct Axes<'a> {
+    posed: Posed<'a>,
+    axes: &'a mut [MovingAxis],
+}
+
+impl Kernel for Axes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Posed { chain, scratch } = self.posed;
+        let p = scratch.tip.p.map(|entry| Lane::splat(simd, entry));
+        let all = chain.folded.segments.iter().zip(&chain.places).zip(&scratch.axes);
+        for (((segment, place), axis), out) in all.zip(self.axes) {
+            let mut axis = *axis;
+            into_twist::<Lane<S>>(simd, &mut axis, segment.motion, &p);
+            let twist = Vector6::from(axis.map(|[entry]| entry * place.multiplier));
+            *out = MovingAxis { joint: place.column, twist };
+        }
+    }
+}
+
 /// The Jacobian of a chain that was posed.
 struct Columns<'a> {
     posed: Posed<'a>,
@@ -245,6 +281,15 @@ impl Posed<'_> {
     /// Returns the number of columns of the Jacobian: [`Chain::dof`].
     pub fn dof(&self) -> usize {
         self.chain.dof()
+    }
+
+    /// Writes the axes that move the tip, from the base to the tip: [`Chain::moving_axes`] of them.
+    ///
+    /// # Panics
+    /// When `axes` has another length.
+    pub fn axes(&self, axes: &mut [MovingAxis]) {
+        assert_eq!(axes.len(), self.chain.moving_axes(), "one entry per moving axis of the chain");
+        with_instructions(self.scratch.level, Axes { posed: *self, axes });
     }
 
     /// Writes the geometric Jacobian, one column per joint of the chain: rows `vx vy vz wx wy wz`, the twist

@@ -48,7 +48,7 @@ pub use chain_error::ChainError;
 pub use dh::{DhConvention, DhError, DhRow, DhTable};
 pub use diagnostic::{Diagnostic, Severity};
 pub use export::ExportError;
-pub use kinematics::{ChainScratch, Posed};
+pub use kinematics::{ChainScratch, MovingAxis, Posed};
 pub use link_kinematics::{JointSource, LinkKinematics, LinkScratch, PosedLinks};
 pub use lock::LockError;
 pub use model::{Defect, Joint, JointKind, Limits, Link, Mimic, Robot};

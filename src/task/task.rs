@@ -1,4 +1,5 @@
 use super::{Motion, TaskKind};
+use crate::robot::MovingAxis;
 use nalgebra::{DMatrix, IsometryMatrix3, Vector6};
 
 /// What the joints of a system shall do: rows `J q' = phi' - k e`, of any number, over one tip or several.
@@ -132,6 +133,8 @@ pub struct Tip {
     pub pose: IsometryMatrix3<f64>,
     /// The columns of its geometric Jacobian (linear; angular) in world axes, one per joint that moves it.
     pub jacobian: Vec<Vector6<f64>>,
+    /// The axes that these columns are sums of, from the base to the tip.
+    pub axes: Vec<MovingAxis>,
     /// The places of these joints among those of the system.
     pub joints: Vec<usize>,
 }

@@ -36,6 +36,7 @@ fn resolve(
         previous_velocity: &rest,
         limits: &[],
         tasks: &[task],
+        tips: &[],
         next: None,
     };
     let mut answer = JointVelocity { feedforward: &mut f, feedback: &mut g };

@@ -3,33 +3,44 @@
 #[expect(clippy::module_inception, reason = "the file is named after the trait that it holds")]
 mod criterion;
 mod criterion_kind;
+mod joint_limits;
+mod manipulability;
 mod posture;
+mod repetitive;
 
 pub use criterion::Criterion;
 pub use criterion_kind::{CriterionKind, MakeCriterion};
+pub use joint_limits::JointLimits;
+pub use manipulability::Manipulability;
 pub use posture::Posture;
 
 /// Every built-in null-space criterion.
-pub const CRITERIA: &[CriterionKind] = &[posture::KIND];
+pub const CRITERIA: &[CriterionKind] =
+    &[repetitive::KIND, joint_limits::KIND, manipulability::KIND, posture::KIND];
 
 #[cfg(test)]
 mod tests {
     use super::super::trial::{prepared, resolve, task};
     use super::super::{Instant, Pseudoinverse, SystemShape};
     use super::*;
+    use crate::robot::Limits;
     use nalgebra::{DMatrix, Vector6};
 
     const START: [f64; 4] = [0.1, 0.2, 0.3, 0.4];
 
     fn velocity(criterion: &mut dyn Criterion, q: &[f64]) -> Vec<f64> {
         let (previous, mut c) = (vec![0.0; q.len()], vec![f64::NAN; q.len()]);
+        let limits: Vec<Limits> = (1..=q.len())
+            .map(|i| Limits { lower: -(i as f64), upper: i as f64, ..Limits::UNLIMITED })
+            .collect();
         let instant = Instant {
             t: 0.5,
             sigma: 0.01,
             q,
             previous_velocity: &previous,
-            limits: &[],
+            limits: &limits,
             tasks: &[],
+            tips: &[],
             next: None,
         };
         criterion.velocity(&instant, &mut c);

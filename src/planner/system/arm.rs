@@ -1,7 +1,7 @@
 use super::lead::Lead;
 use crate::law::{Law, Pseudoinverse};
 use crate::math::RowRotations;
-use crate::robot::{Chain, ChainScratch};
+use crate::robot::{Chain, ChainScratch, MovingAxis, Posed};
 use crate::task::{Motion, Task, TaskInstant, TaskKind, TaskRows, Tip, Tracking};
 use nalgebra::{IsometryMatrix3, Vector6};
 use std::sync::Arc;
@@ -139,10 +139,8 @@ impl Arm {
 
     /// What its task asks for at time `t` \[s\] of the path with the joints at `q` [rad or m].
     fn task_rows(&self, t: f64, q: &[f64], scratch: &mut ChainScratch) -> TaskRows {
-        let posed = self.chain.forward(q, scratch);
         let mut tip = tip_of(&self.chain, (0..self.chain.dof()).collect());
-        tip.pose = posed.pose();
-        posed.geometric_jacobian(&mut tip.jacobian);
+        pose(&mut tip, self.chain.forward(q, scratch));
         let mut rows = TaskRows::zeros(self.task.rows(), self.chain.dof());
         self.task.evaluate(&TaskInstant::new(t, q, &[tip], &[0]), &mut rows);
         rows
@@ -197,5 +195,20 @@ impl Arm {
 
 /// A tip that a chain is to move, its joints at the places `joints` of a system.
 pub(in crate::planner) fn tip_of(chain: &Chain, joints: Vec<usize>) -> Tip {
-    Tip { pose: IsometryMatrix3::identity(), jacobian: vec![Vector6::zeros(); chain.dof()], joints }
+    Tip {
+        pose: IsometryMatrix3::identity(),
+        jacobian: vec![Vector6::zeros(); chain.dof()],
+        axes: vec![MovingAxis::default(); chain.moving_axes()],
+        joints,
+    }
+}
+
+/// Writes where a chain that was posed has its tip, and how its joints move it.
+pub(in crate::planner) fn pose(tip: &mut Tip, posed: Posed<'_>) {
+    tip.pose = posed.pose();
+    posed.axes(&mut tip.axes);
+    tip.jacobian.fill(Vector6::zeros());
+    for axis in &tip.axes {
+        tip.jacobian[axis.joint] += axis.twist;
+    }
 }

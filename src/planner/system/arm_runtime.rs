@@ -1,4 +1,4 @@
-use super::arm::Arm;
+use super::arm::{Arm, pose};
 use super::arm_state::ArmState;
 use super::bounds::{Bounds, Deviation, StopCriteria};
 use super::disturbance::Disturbance;
@@ -64,9 +64,7 @@ impl ArmRuntime {
 
     /// Forward kinematics and Jacobian at the positions it has.
     pub(in crate::planner) fn pose(&mut self, tip: &mut Tip) {
-        let posed = self.arm.chain.forward(&self.positions, &mut self.scratch);
-        posed.geometric_jacobian(&mut tip.jacobian);
-        tip.pose = posed.pose();
+        pose(tip, self.arm.chain.forward(&self.positions, &mut self.scratch));
     }
 
     /// What tells that a sample of it needs no closer look.

@@ -1,4 +1,4 @@
-use super::arm::{Arm, tip_of};
+use super::arm::{Arm, pose, tip_of};
 use crate::task::{Task, TaskInstant, TaskRows};
 use nalgebra::DMatrix;
 
@@ -70,9 +70,7 @@ fn rows_at(arms: &[Arm], task: &dyn Task, t: f64, q: &[f64]) -> TaskRows {
         first += joints.len();
         let mut tip = tip_of(&arm.chain, joints);
         let mut scratch = arm.chain.scratch();
-        let posed = arm.chain.forward(&q[first - arm.chain.dof()..first], &mut scratch);
-        posed.geometric_jacobian(&mut tip.jacobian);
-        tip.pose = posed.pose();
+        pose(&mut tip, arm.chain.forward(&q[first - arm.chain.dof()..first], &mut scratch));
         tips.push(tip);
     }
     let chosen: Vec<usize> = (0..tips.len()).collect();

@@ -82,7 +82,12 @@ impl System {
         let tips: Vec<Tip> =
             members.iter().map(|member| tip_of(&arms[member.arm].arm.chain, member.places.clone())).collect();
         let tasks = tasks(arms, &members, added);
-        let shape = SystemShape { tasks: task_shapes(arms, &members, &tasks), joints: union.names(), sigma };
+        let shape = SystemShape {
+            tasks: task_shapes(arms, &members, &tasks),
+            joints: union.names(),
+            axes: tips.iter().map(|tip| tip.axes.len()).collect(),
+            sigma,
+        };
         let has_own_law = law.is_some();
         let mut law = law.unwrap_or_else(|| default_law(arms, indices, sigma));
         law.objection(&shape).map_or(Ok(()), Err)?;
@@ -242,6 +247,7 @@ impl System {
             previous_velocity,
             limits: &self.limits,
             tasks: &self.rows,
+            tips: &self.tips,
             next: self.law.needs_next_state().then_some(NextState { known, first, second }),
         };
         let mut answer = JointVelocity { feedforward: &mut *f, feedback: &mut *g };
@@ -393,12 +399,10 @@ fn task_shapes(arms: &[ArmRuntime], members: &[Member], tasks: &[TaskState]) -> 
         let mut joints: Vec<usize> = state.tips.iter().flat_map(|&tip| members[tip].places.clone()).collect();
         joints.sort_unstable();
         joints.dedup();
-        let is_angular = |row: usize| state.task.component(row).is_angular();
-        let rows = state.task.rows();
         TaskShape {
             name: state.task.name().to_owned(),
-            rows,
-            mixes_units: (0..rows).any(is_angular),
+            components: (0..state.task.rows()).map(|row| state.task.component(row)).collect(),
+            tips: state.tips.clone(),
             length: state.tips.iter().map(|&tip| arms[members[tip].arm].arm.length()).fold(0.0, f64::max),
             joints,
             priority: state.priority,
