@@ -21,12 +21,14 @@ pub struct Resolution {
     pub damped: bool,
     /// The rate [1/s] at which the null-space criteria pulled here; zero without any.
     pub criterion_rate: f64,
+    /// How many rows of a stack of tasks could not be met beside those that come before them.
+    pub missing_rows: usize,
 }
 
 impl Default for Resolution {
     /// Far from every singularity, without a criterion.
     fn default() -> Self {
-        Self { smallest_singular_value: f64::INFINITY, damped: false, criterion_rate: 0.0 }
+        Self { smallest_singular_value: f64::INFINITY, damped: false, criterion_rate: 0.0, missing_rows: 0 }
     }
 }
 

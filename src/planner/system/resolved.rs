@@ -406,6 +406,7 @@ fn task_shapes(arms: &[ArmRuntime], members: &[Member], tasks: &[TaskState]) -> 
             length: state.tips.iter().map(|&tip| arms[members[tip].arm].arm.length()).fold(0.0, f64::max),
             joints,
             priority: state.priority,
+            weight: state.weight,
         }
     };
     tasks.iter().map(shape).collect()

@@ -9,6 +9,7 @@ use super::approach::{Approach, TOLERANCE, reach};
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
 use super::kinds::Kinds;
+use super::law_spec::LawSpec;
 use super::model::{ArmSpec, Mount, Scenario};
 use super::noise_spec::NoiseSpec;
 use super::path_spec::PathSpec;
@@ -63,6 +64,7 @@ impl Scenario {
             return Err(all);
         }
         let arms: Vec<Arm> = arms.into_iter().collect::<Result<_, _>>()?;
+        self.law.check_joints(kinds, &arms)?;
         let arms = self.on_machines(arms)?;
         let systems = self.systems(kinds, &arms)?;
         let builder = self.builder(formula?).arms(arms);
@@ -164,7 +166,7 @@ impl Scenario {
         machine: &[&Arm],
     ) -> Result<Arm, ScenarioError> {
         let at = KeyPath::dotted("arm").key(&spec.name);
-        let chain = chain(&at, spec, folder)?.mounted(&spec.mount.pose());
+        let chain = chain(&at, spec, &self.law, folder)?.mounted(&spec.mount.pose());
         let given: Vec<f64> = spec.q0.iter().map(Real::value).collect();
         if !given.is_empty() || spec.start_pose.is_none() {
             chain.check_within_limits(&given).map_err(|problem| refused_positions(&at, &problem))?;
@@ -356,9 +358,9 @@ pub(super) fn read_robot(
     Ok((source, robot))
 }
 
-fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
+fn chain(at: &KeyPath, spec: &ArmSpec, law: &LawSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
     let (source, robot) = read_robot(at, spec, folder)?;
-    let (robot, tip) = spec.tooled(at, spec.changed(at, robot, folder)?)?;
+    let (robot, tip) = spec.tooled(at, spec.changed(at, robot, law, folder)?)?;
     let chain = robot.chain(&spec.base, &tip).map_err(|e| {
         let key = if robot.link(&spec.base).is_none() { "base" } else { "tip" };
         let is_free = matches!(e, ChainError::UnsupportedJoint { .. });

@@ -4,6 +4,7 @@ use schemars::Schema;
 use serde_json::{Map, Value, json};
 
 use super::kinds::Kinds;
+use super::law_spec::ACCELERATION_LIMIT;
 use kinstep::kind::{Form, Parameter, Registry};
 
 /// Puts the curves and their parameters, and the time laws, into the schema of a path.
@@ -16,6 +17,9 @@ pub(super) fn curves(schema: &mut Schema) {
 /// Puts the laws and their parameters into the schema of `[law]`.
 pub(super) fn laws(schema: &mut Schema) {
     extend(schema, &Kinds::builtin().laws);
+    let limit = &ACCELERATION_LIMIT;
+    let described = format!("[{}] {}", limit.unit, limit.description);
+    set(schema, limit.name, |_| with_description(form(limit), &described));
 }
 
 /// Puts the criteria and their parameters into the schema of a criterion.
@@ -74,6 +78,10 @@ fn form(parameter: &Parameter) -> Value {
         Form::Point => of_length(real, 2, 3),
         Form::Vectors => list(of_length(real, 3, 3)),
         Form::Text => json!({ "type": "string" }),
+        Form::OneOf(words) => json!({ "type": "string", "enum": words }),
+        Form::ByJoint { .. } => {
+            json!({ "anyOf": [real, { "type": "object", "additionalProperties": real }] })
+        }
         Form::Flag => json!({ "type": "boolean" }),
     }
 }
