@@ -45,7 +45,7 @@ fn what_is_no_file_of_capsules_is_refused() {
     let robot = embedded::get("planar4").unwrap();
     let lost = CollisionModel::from_file(&robot, "no/such.toml".as_ref()).unwrap_err().to_string();
     assert!(lost.starts_with("can not read no/such.toml: there is no such file"), "{lost}");
-    let none = CollisionModel::embedded("planar4").unwrap_err().to_string();
+    let none = CollisionModel::embedded("baxter").unwrap_err().to_string();
     assert!(none.contains("has no capsules; give it some"), "{none}");
 }
 
@@ -78,11 +78,12 @@ fn what_is_wrong_in_an_srdf_is_said_with_its_place() {
     let pair = |attributes: &str| srdf(&format!("<disable_collisions {attributes}/>")).unwrap_err();
     let unknown = pair(r#"link1="panda_link1" link2="panda_lnik3""#);
     assert!(
-        unknown.starts_with("line 3, column 42: the robot has no link `panda_lnik3`; did you mean"),
+        unknown.starts_with("line 3, column 41: the robot has no link `panda_lnik3`; did you mean"),
         "{unknown}"
     );
     assert!(pair(r#"link1="panda_link1""#).contains("`<disable_collisions>` has no `link2`"));
-    assert!(pair(r#"link1="panda_link1" lnik2="panda_link3""#).contains("did you mean `link2`?"));
+    let slip = pair(r#"link1="panda_link1" lnik2="panda_link3""#);
+    assert!(slip.contains("did you mean `link2`?"), "{slip}");
     assert!(pair(r#"link1="panda_link1" link2="panda_link1""#).contains("names `panda_link1` twice"));
     let slip = srdf(r#"<disable_colisions link1="a" link2="b"/>"#).unwrap();
     assert!(

@@ -70,7 +70,7 @@ impl CollisionModel {
 
 fn read(robot: &Robot, file: &Entries<'_, '_>, report: &mut Report<'_>) -> Option<CollisionModel> {
     file.check_keys("a file of capsules", &KEYS, report);
-    if !KEYS.iter().any(|key| file.value(key).is_some()) {
+    if file.table.is_empty() {
         report.error(0, "there is nothing in this file: write [[capsule]] with link, from, to and radius");
         return None;
     }

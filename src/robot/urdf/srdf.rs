@@ -166,8 +166,10 @@ fn question(name: &str, node: Node<'_, '_>, report: &mut Report<'_>) {
 }
 
 fn pair(node: Node<'_, '_>, known: Known, robot: &Robot, report: &mut Report<'_>) -> Option<DisabledPair> {
-    for (place, cause) in element::check_attributes(node, known, false, report) {
-        report.error(place, cause);
+    let misspelt = element::check_attributes(node, known, false, report);
+    if !misspelt.is_empty() {
+        misspelt.into_iter().for_each(|(place, cause)| report.error(place, cause));
+        return None;
     }
     let [one, other] = ["link1", "link2"].map(|name| link(node, known.element, name, robot, report));
     let links = [one?, other?];
