@@ -274,3 +274,75 @@ fn damping(given: &Parameters) -> Damping {
         _ => Damping::Adaptive(given.number("damping")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::trial::{prepared, resolve, task};
+    use super::super::{Posture, Pseudoinverse};
+    use super::*;
+    use nalgebra::{DMatrix, DVector, Vector6};
+    use proptest::prelude::*;
+
+    fn apart(a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    proptest! {
+        #[test]
+        fn constant_damping_is_the_regularised_inverse(
+            entries in prop::collection::vec(-1.0..1.0_f64, 42), v in prop::array::uniform6(-1.0..1.0_f64), factor in 0.01..1.0_f64,
+        ) {
+            let columns: Vec<_> = entries.chunks(6).map(Vector6::from_column_slice).collect();
+            let jacobian = DMatrix::from_fn(6, 7, |row, column| columns[column][row]);
+            let gram = &jacobian * jacobian.transpose() + DMatrix::identity(6, 6) * factor * factor;
+            let expected = jacobian.transpose() * gram.cholesky().unwrap().solve(&DVector::from_row_slice(&v));
+            let mut law = prepared(Damped::new(Damping::Constant(factor)), 6, 7);
+            let ([f, g], _) = resolve(&mut law, &[0.0; 7], &[task(6, &columns, &v, &v)]);
+            prop_assert!(apart(&f, expected.as_slice()) < 1e-9 && apart(&g, expected.as_slice()) < 1e-9);
+        }
+
+        #[test]
+        fn adaptive_damping_is_that_of_the_least_norm_law_unless_told_otherwise(
+            entries in prop::collection::vec(-1.0..1.0_f64, 42), v in prop::array::uniform6(-1.0..1.0_f64), threshold in 0.01..2.0_f64,
+        ) {
+            let columns: Vec<_> = entries.chunks(6).map(Vector6::from_column_slice).collect();
+            let demand = [task(6, &columns, &v, &v)];
+            let posture = || Posture::new(1.0, vec![0.1; 7]);
+            let damped = Damped::new(Damping::Adaptive(None)).with_threshold(threshold).with_criterion(posture());
+            let plain = Pseudoinverse::new().with_threshold(threshold).with_criterion(posture());
+            let ([f, g], own) = resolve(&mut prepared(damped, 6, 7), &[0.0; 7], &demand);
+            let ([h, i], other) = resolve(&mut prepared(plain, 6, 7), &[0.0; 7], &demand);
+            prop_assume!(own.smallest_singular_value > 1e-3);
+            prop_assert!(apart(&f, &h) < 1e-7 && apart(&g, &i) < 1e-7);
+            // The least-norm law decides by a bound where that suffices.
+            prop_assert!(own.damped == other.damped);
+        }
+
+        #[test]
+        fn selective_damping_bounds_every_joint_and_does_nothing_where_there_is_room(
+            entries in prop::collection::vec(-1.0..1.0_f64, 42), v in prop::array::uniform6(-1.0..1.0_f64), most in 0.01..1.0_f64,
+        ) {
+            let columns: Vec<_> = entries.chunks(6).map(Vector6::from_column_slice).collect();
+            let zero = [0.0; 6];
+            let demand = [task(6, &columns, &v, &zero)];
+            let of = |most| {
+                let mut law = prepared(Damped::new(Damping::Selective(Some(most))), 6, 7);
+                resolve(&mut law, &[0.0; 7], &demand).0[0].clone()
+            };
+            prop_assert!(of(most).iter().all(|x| x.abs() <= most * (1.0 + 1e-12)));
+            let (free, plain) = (of(1e9), resolve(&mut prepared(Pseudoinverse::new(), 6, 7), &[0.0; 7], &demand));
+            prop_assume!(plain.1.smallest_singular_value > 1e-2);
+            prop_assert!(apart(&free, &plain.0[0]) < 1e-8);
+        }
+    }
+
+    #[test]
+    fn parameters_that_belong_to_another_method_are_refused() {
+        let objection = |given: Parameters| (KIND.objection.unwrap())(&given);
+        let given = Parameters::new;
+        assert_eq!(objection(given()), None);
+        assert!(objection(given().with("method", "constant")).unwrap().contains("`damping`"));
+        assert!(objection(given().with("method", "selective").with("damping", 0.1)).is_some());
+        assert!(objection(given().with("max_velocity", 0.1)).is_some());
+    }
+}

@@ -10,6 +10,11 @@ use crate::math::{Constraint, LeastDistance, NoSolution};
 ///
 /// It is asked only where the velocity that is best without ranges leaves them.
 pub trait RangeMethod: Send {
+    /// Why this method can not serve systems of a shape, as the end of a sentence that begins with "this law"; `None` if it can.
+    fn objection(&self, _shape: &SystemShape) -> Option<String> {
+        None
+    }
+
     /// Allocates what systems of this shape need; called once, before the first [`solve`](RangeMethod::solve).
     fn prepare(&mut self, shape: &SystemShape);
 
@@ -138,7 +143,7 @@ impl<M: RangeMethod> Law for Limited<M> {
     }
 
     fn objection(&self, shape: &SystemShape) -> Option<String> {
-        self.free.objection(shape)
+        self.free.objection(shape).or_else(|| self.method.objection(shape))
     }
 
     fn criterion_rate(&self) -> Option<f64> {

@@ -17,6 +17,7 @@ mod law;
 mod law_kind;
 mod least_norm;
 mod limited;
+mod network;
 mod prioritized;
 mod pseudoinverse;
 mod quadratic_program;
@@ -37,6 +38,7 @@ pub use instant::{Instant, JointVelocity, NextState};
 pub use law::{Law, LinearityKind, Resolution};
 pub use law_kind::{Criteria, LawKind, MakeLaw};
 pub use limited::{Limited, RangeMethod};
+pub use network::{Network, NetworkKind, RecurrentNetwork};
 pub use prioritized::Prioritized;
 pub use pseudoinverse::Pseudoinverse;
 pub use quadratic_program::{ActiveSetMethod, QuadraticProgram};
@@ -52,6 +54,7 @@ pub const LAWS: &[LawKind] = &[
     prioritized::KIND,
     quadratic_program::KIND,
     saturated::KIND,
+    network::KIND,
 ];
 
 pub(crate) use damping::is_regular;

@@ -149,3 +149,48 @@ pub(super) const KIND: LawKind = Kind::new(
     &[],
     MakeLaw::WithCriteria(|_, criteria| Box::new(Limited::by(NullSpaceSaturation::default(), criteria))),
 );
+
+#[cfg(test)]
+mod tests {
+    use super::super::task_stack::dot;
+    use super::*;
+    use crate::math::LeastDistanceSolver;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn what_it_finds_lies_within_the_ranges_and_meets_the_tasks_and_is_never_nearer_than_the_nearest(
+            equalities in prop::collection::vec(-1.0..1.0_f64, 21), values in prop::collection::vec(-1.0..1.0_f64, 3),
+            target in prop::collection::vec(-1.0..1.0_f64, 7),
+        ) {
+            let bounds = [0.6; 7];
+            let problem = LeastDistance {
+                target: &target, equalities: &equalities, values: &values, lower: &bounds.map(|b| -b), upper: &bounds,
+                inequalities: &[], bounds: &[],
+            };
+            let free = LeastDistance { lower: &[-1e9; 7], upper: &[1e9; 7], ..problem };
+            let mut solver = LeastDistanceSolver::with_capacity(7);
+            let mut x = [0.0; 7];
+            prop_assume!(solver.solve(&free, &mut x).is_ok());
+            let mut exact = [0.0; 7];
+            let nearest = solver.solve(&problem, &mut exact);
+            let mut saturation = NullSpaceSaturation::default();
+            saturation.prepare(&SystemShape::of_one_task(3, 7, 1.0));
+            match saturation.solve(&problem, &mut x) {
+                Ok(()) => {
+                    prop_assert!(nearest.is_ok(), "it found a point where there is none");
+                    prop_assert!(x.iter().all(|x| x.abs() <= 0.6 * (1.0 + 1e-9)), "{x:?}");
+                    for (row, value) in equalities.chunks(7).zip(&values) {
+                        prop_assert!((dot(row, &x) - value).abs() < 1e-8);
+                    }
+                    let way = |x: &[f64; 7]| x.iter().zip(&target).map(|(x, c)| (x - c).powi(2)).sum::<f64>();
+                    prop_assert!(way(&x) >= way(&exact) - 1e-9);
+                }
+                Err(failure) => {
+                    prop_assert_eq!(failure, NoSolution::Infeasible);
+                    prop_assert!(saturation.conflict().len() > 3, "the tasks and the joints that are held");
+                }
+            }
+        }
+    }
+}

@@ -158,3 +158,38 @@ pub(super) const KIND: LawKind = Kind::new(
         Box::new(law.with_criteria(criteria))
     }),
 );
+
+#[cfg(test)]
+mod tests {
+    use super::super::Posture;
+    use super::super::trial::{prepared, resolve, task};
+    use super::*;
+    use nalgebra::{DMatrix, DVector, Vector6};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn it_is_the_weighted_inverse_and_the_null_space_part_moves_no_task(
+            entries in prop::collection::vec(-1.0..1.0_f64, 42), v in prop::array::uniform6(-1.0..1.0_f64),
+            weights in prop::collection::vec(1.0..50.0_f64, 7),
+        ) {
+            let columns: Vec<_> = entries.chunks(6).map(Vector6::from_column_slice).collect();
+            let jacobian = DMatrix::from_fn(3, 7, |row, column| columns[column][row]);
+            let named = weights.iter().enumerate().map(|(joint, weight)| (format!("joint {joint}"), *weight));
+            let by_joint = ByJoint::Named(named.collect());
+            let inverse = DMatrix::from_diagonal(&DVector::from_vec(weights).map(f64::recip));
+            let gram = &jacobian * &inverse * jacobian.transpose();
+            prop_assume!(gram.clone().symmetric_eigenvalues().min() > 1e-3);
+            let wanted = DVector::from_row_slice(&v[..3]);
+            let expected = &inverse * jacobian.transpose() * gram.try_inverse().unwrap_or_default() * &wanted;
+            let demand = [task(3, &columns, &v, &v)];
+            let mut law = prepared(Weighted::new(by_joint.clone()), 3, 7);
+            let ([f, g], _) = resolve(&mut law, &[0.3; 7], &demand);
+            prop_assert!((DVector::from_vec(f) - &expected).norm() < 1e-8 && (DVector::from_vec(g) - &expected).norm() < 1e-8);
+            let pulled = Weighted::new(by_joint).with_criterion(Posture::new(1.0, vec![0.0; 7]));
+            let ([f, _], resolution) = resolve(&mut prepared(pulled, 3, 7), &[0.3; 7], &demand);
+            prop_assert!((&jacobian * DVector::from_vec(f) - wanted).norm() < 1e-9);
+            prop_assert_eq!(resolution.criterion_rate, 1.0);
+        }
+    }
+}
