@@ -7,10 +7,12 @@
 mod fit;
 mod geometry;
 mod model;
+mod obstacle;
 mod scene;
 
 pub use geometry::{Capsule, Cuboid, HalfSpace, Separation, Shape, ShapeError};
 pub use model::{CollisionError, CollisionModel, Fit, LinkCapsule, Missing};
+pub use obstacle::{MakeObstacle, OBSTACLES, ObstacleKind};
 pub use scene::{
     JointPlaces, Pairings, PlacedScene, Proximities, Proximity, Scene, SceneBuilder, SceneScratch,
 };
