@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::{PlanFormat, Table, short, sparkline};
 use kinstep::math::number_text;
-use kinstep::planner::{ArmPlan, Noise, Plan, TaskPlan};
+use kinstep::planner::{ArmPlan, ClosestApproach, Noise, Plan, TaskPlan};
 
 /// Width of the curves of the task errors [characters].
 const CURVE: usize = 64;
@@ -44,6 +44,7 @@ impl PlanFormat for PlanText {
         }
         plan.arms.iter().try_for_each(|arm| start(arm, out))?;
         approach_of(plan).iter().try_for_each(|sentence| writeln!(out, "\n{sentence}"))?;
+        plan.distance.iter().try_for_each(|closest| writeln!(out, "\n{}", came_near(closest)))?;
         writeln!(out, "\ntask error over time, logarithmic:")?;
         let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
         for arm in &plan.arms {
@@ -60,6 +61,17 @@ impl PlanFormat for PlanText {
 /// Says how well a task over the tips of several arms was kept.
 pub(super) fn kept_together(task: &TaskPlan) -> String {
     format!("task {} of {}: max error {:.2e}", task.name, task.arms.join(" and "), task.max_error())
+}
+
+/// Says how near bodies came to each other.
+pub(super) fn came_near(closest: &ClosestApproach) -> String {
+    let ClosestApproach { minimum, pair: [one, other], t, margin, .. } = closest;
+    let verdict = if closest.is_kept() { "kept" } else { "not kept" };
+    format!(
+        "least distance {minimum:.4} m at t = {} s, between {one} and {other} (margin {} m, {verdict})",
+        short(*t),
+        short(*margin)
+    )
 }
 
 /// Says what noise a loop suffered.
