@@ -56,6 +56,11 @@ impl CriteriaSum {
         self.criteria.iter().map(|criterion| criterion.rate_at(instant)).sum()
     }
 
+    /// Whether one of them looks at the distances of bodies.
+    pub(super) fn keeps_distances(&self) -> bool {
+        self.criteria.iter().any(Criterion::keeps_distances)
+    }
+
     pub(super) fn objection(&self, shape: &SystemShape) -> Option<String> {
         self.criteria.iter().find_map(|criterion| criterion.objection(shape))
     }

@@ -215,6 +215,10 @@ impl Law for Damped {
         super::shape::one_priority(shape).or_else(|| self.criteria.objection(shape))
     }
 
+    fn keeps_distances(&self) -> bool {
+        self.criteria.keeps_distances()
+    }
+
     fn criterion_rate(&self) -> Option<f64> {
         self.criteria.rate()
     }

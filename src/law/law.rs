@@ -103,6 +103,12 @@ pub trait Law: Send {
         false
     }
 
+    /// Whether [`Instant::avoidance`] is to be there: pairs of bodies that are near. All arms of a plan that has something around
+    /// them are then one system, so that the law sees every pair.
+    fn keeps_distances(&self) -> bool {
+        false
+    }
+
     /// The singular value below which this law calls a configuration singular: a run does not start there, and what it
     /// loses near there is put down to it. Zero unless overridden: no configuration is.
     fn threshold(&self) -> f64 {
@@ -156,6 +162,10 @@ impl Law for Box<dyn Law> {
 
     fn needs_next_state(&self) -> bool {
         (**self).needs_next_state()
+    }
+
+    fn keeps_distances(&self) -> bool {
+        (**self).keeps_distances()
     }
 
     fn threshold(&self) -> f64 {

@@ -1,3 +1,4 @@
+use super::distance_rows::DistanceRows;
 use super::joint_ranges::JointRanges;
 use super::task_stack::TaskStack;
 use super::{
@@ -24,6 +25,11 @@ pub trait RangeMethod: Send {
     /// [`NoSolution`] where it finds none; the rows in [`conflict`](RangeMethod::conflict) are named then.
     fn solve(&mut self, problem: &LeastDistance<'_>, x: &mut [f64]) -> Result<(), NoSolution>;
 
+    /// Whether it keeps inequalities over several joints too: the rows that keep bodies apart.
+    fn takes_rows(&self) -> bool {
+        false
+    }
+
     /// The rows that can not all be met, after [`NoSolution::Infeasible`].
     fn conflict(&self) -> &[Constraint];
 }
@@ -37,7 +43,8 @@ pub trait RangeMethod: Send {
 /// is that of [`Pseudoinverse`], to the last bit; where one is, the feedback part stays what it is there, `-k J^+ e`, so that the
 /// task error falls by the row's `gamma` at all times, and the feedforward part makes room for the limits. Near a singularity the tasks ask for what the damped inverse gives. Where the
 /// tasks can not be met within the limits, the run stops and says which rows are in conflict. A joint that is beyond a limit
-/// comes back.
+/// comes back. By a method that [takes rows](RangeMethod::takes_rows) bodies are kept apart too, where something stands around
+/// the arms ([`Avoidance`](super::Avoidance)).
 #[derive(Default)]
 pub struct Limited<M> {
     free: Pseudoinverse,
@@ -48,6 +55,7 @@ pub struct Limited<M> {
 #[derive(Default)]
 struct Workspace {
     ranges: JointRanges,
+    distances: DistanceRows,
     stack: TaskStack,
     /// What the tasks ask for: what the answer without ranges does.
     values: Vec<f64>,
@@ -95,6 +103,7 @@ impl<M: RangeMethod> Law for Limited<M> {
         let joints = shape.joints.len();
         self.workspace = Workspace {
             ranges: JointRanges::with_capacity(joints),
+            distances: DistanceRows::new(shape),
             stack: TaskStack::new(shape),
             values: vec![0.0; shape.rows()],
             x: vec![0.0; joints],
@@ -111,10 +120,13 @@ impl<M: RangeMethod> Law for Limited<M> {
         let resolution = self.free.resolve(instant, velocity)?;
         let (f, g) = (&mut *velocity.feedforward, &*velocity.feedback);
         workspace.ranges.find(instant, g)?;
+        if self.method.takes_rows() {
+            workspace.distances.find(instant, g);
+        }
         for (x, (f, g)) in workspace.x.iter_mut().zip(f.iter().zip(g)) {
             *x = f + g;
         }
-        if !workspace.ranges.contains(&workspace.x) {
+        if !(workspace.ranges.contains(&workspace.x) && workspace.distances.contain(&workspace.x)) {
             workspace.prepare_problem(instant);
             let mut x = std::mem::take(&mut workspace.x);
             let solved = self.method.solve(&workspace.problem(self.free.criteria_sum()), &mut x);
@@ -150,6 +162,10 @@ impl<M: RangeMethod> Law for Limited<M> {
         self.free.objection(shape).or_else(|| self.method.objection(shape))
     }
 
+    fn keeps_distances(&self) -> bool {
+        self.method.takes_rows() || self.free.keeps_distances()
+    }
+
     fn criterion_rate(&self) -> Option<f64> {
         self.free.criterion_rate()
     }
@@ -169,8 +185,8 @@ impl Workspace {
             values: &self.values,
             lower: &self.ranges.lower,
             upper: &self.ranges.upper,
-            inequalities: &[],
-            bounds: &[],
+            inequalities: self.distances.rows(),
+            bounds: self.distances.bounds(),
         }
     }
 
@@ -184,9 +200,12 @@ impl Workspace {
 
     fn name(&self, row: Constraint) -> Conflict {
         match row {
-            Constraint::Equality(row) | Constraint::Inequality(row) => {
+            Constraint::Equality(row) => {
                 let (task, row) = self.stack.place(row);
                 Conflict::Task { task, row }
+            }
+            Constraint::Inequality(row) => {
+                Conflict::Distance { pair: self.distances.pair(row).unwrap_or_default() }
             }
             Constraint::Lower(joint) => Conflict::Limit { joint, kind: self.ranges.kind(joint, false) },
             Constraint::Upper(joint) => Conflict::Limit { joint, kind: self.ranges.kind(joint, true) },

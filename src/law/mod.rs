@@ -8,6 +8,7 @@ mod criteria_sum;
 mod criterion;
 mod damped;
 mod damping;
+mod distance_rows;
 mod fixed_rows;
 mod infeasible;
 mod instant;
@@ -30,11 +31,11 @@ mod trial;
 mod weighted;
 
 pub use criterion::{
-    CRITERIA, Criterion, CriterionKind, JointLimits, MakeCriterion, Manipulability, Posture,
+    CRITERIA, Clearance, Criterion, CriterionKind, JointLimits, MakeCriterion, Manipulability, Posture,
 };
 pub use damped::{Damped, Damping};
 pub use infeasible::{Conflict, Infeasible, LimitKind};
-pub use instant::{Instant, JointVelocity, NextState};
+pub use instant::{Avoidance, Instant, JointVelocity, NextState};
 pub use law::{Law, LinearityKind, Resolution};
 pub use law_kind::{Criteria, LawKind, MakeLaw};
 pub use limited::{Limited, RangeMethod};

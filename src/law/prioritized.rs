@@ -220,6 +220,10 @@ impl Law for Prioritized {
         self.criteria.objection(shape)
     }
 
+    fn keeps_distances(&self) -> bool {
+        self.criteria.keeps_distances()
+    }
+
     fn criterion_rate(&self) -> Option<f64> {
         self.criteria.rate()
     }

@@ -122,6 +122,10 @@ impl Law for Pseudoinverse {
         self.criteria.is_empty().then_some(self.threshold)
     }
 
+    fn keeps_distances(&self) -> bool {
+        self.criteria.keeps_distances()
+    }
+
     fn criterion_rate(&self) -> Option<f64> {
         self.criteria.rate()
     }

@@ -38,6 +38,7 @@ struct Slacks {
     equalities: Vec<f64>,
     lower: Vec<f64>,
     upper: Vec<f64>,
+    inequalities: Vec<f64>,
     x: Vec<f64>,
 }
 
@@ -52,6 +53,7 @@ impl Slacks {
             equalities: vec![0.0; rows * unknowns],
             lower: vec![f64::NEG_INFINITY; unknowns],
             upper: vec![f64::INFINITY; unknowns],
+            inequalities: Vec::with_capacity(shape.pairs * unknowns),
             x: vec![0.0; unknowns],
         }
     }
@@ -72,11 +74,17 @@ impl Slacks {
             extended[..joints].copy_from_slice(own);
             extended[joints + row] = (rho / weight).sqrt();
         }
+        self.inequalities.clear();
+        for row in problem.inequalities.chunks_exact(joints) {
+            self.inequalities.extend_from_slice(row);
+            self.inequalities.resize(self.inequalities.len() + unknowns - joints, 0.0);
+        }
         let extended = LeastDistance {
             target: &self.target,
             equalities: &self.equalities,
             lower: &self.lower,
             upper: &self.upper,
+            inequalities: &self.inequalities,
             ..*problem
         };
         solver.solve(&extended, &mut self.x)?;
@@ -111,6 +119,10 @@ impl RangeMethod for ActiveSetMethod {
             None => solver.solve(problem, x).map(drop),
             Some(rho) => self.slacks.solve(solver, problem, rho, x),
         }
+    }
+
+    fn takes_rows(&self) -> bool {
+        true
     }
 
     fn conflict(&self) -> &[Constraint] {

@@ -11,6 +11,8 @@ pub struct SystemShape {
     pub axes: Vec<usize>,
     /// The sampling gap of the run \[s\].
     pub sigma: f64,
+    /// How many pairs of bodies may have to be kept apart.
+    pub pairs: usize,
 }
 
 /// What stays the same of a task in a system.
@@ -49,6 +51,7 @@ impl SystemShape {
             tasks: vec![task],
             axes: vec![joints],
             sigma: 0.0,
+            pairs: 0,
         }
     }
 

@@ -102,6 +102,10 @@ impl Law for Weighted {
         self.scaled.objection(shape)
     }
 
+    fn keeps_distances(&self) -> bool {
+        self.scaled.keeps_distances()
+    }
+
     fn criterion_rate(&self) -> Option<f64> {
         self.scaled.criterion_rate()
     }

@@ -99,8 +99,17 @@ fn resolve(law: &mut dyn Law, q: &[f64], limits: &[Limits], tasks: &[TaskRows]) 
     let (mut f, mut g) = (vec![0.0; q.len()], vec![0.0; q.len()]);
     let rest = vec![0.0; q.len()];
     let next = law.needs_next_state().then_some(NextState { known: q, first: 0.01, second: 0.01 });
-    let instant =
-        Instant { t: 0.0, sigma: 0.01, q, previous_velocity: &rest, limits, tasks, tips: &[], next };
+    let instant = Instant {
+        t: 0.0,
+        sigma: 0.01,
+        q,
+        previous_velocity: &rest,
+        limits,
+        tasks,
+        tips: &[],
+        next,
+        avoidance: None,
+    };
     law.resolve(&instant, &mut JointVelocity { feedforward: &mut f, feedback: &mut g }).unwrap();
     f.iter().zip(&g).map(|(f, g)| f + g).collect()
 }

@@ -37,6 +37,7 @@ struct Document<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     stacks: Vec<Stack<'a>>,
     shared: Vec<Shared<'a>>,
+    distance: Option<Distance<'a>>,
     warnings: &'a [String],
 }
 
@@ -65,6 +66,16 @@ struct Task<'a> {
 struct Shared<'a> {
     arms: &'a [String],
     joints: &'a [String],
+}
+
+/// How near two bodies came to each other.
+#[derive(Serialize)]
+struct Distance<'a> {
+    minimum: f64,
+    pair: &'a [String; 2],
+    t: f64,
+    margin: f64,
+    ok: bool,
 }
 
 #[derive(Serialize)]
@@ -171,6 +182,7 @@ impl<'a> Document<'a> {
             tasks: plan.tasks.iter().map(Task::of).collect(),
             stacks: plan.stacks.iter().map(Stack::of).collect(),
             shared: plan.shared.iter().map(|s| Shared { arms: &s.arms, joints: &s.joints }).collect(),
+            distance: plan.distance.as_ref().map(Distance::of),
             warnings: &plan.warnings,
         }
     }
@@ -181,6 +193,13 @@ impl Noise {
         let planner::Noise { seed, position, orientation, linear_velocity, angular_velocity, joints } =
             *noise;
         Self { seed, position, orientation, linear_velocity, angular_velocity, joints }
+    }
+}
+
+impl<'a> Distance<'a> {
+    fn of(closest: &'a planner::ClosestApproach) -> Self {
+        let planner::ClosestApproach { minimum, ref pair, t, margin, .. } = *closest;
+        Self { minimum, pair, t, margin, ok: closest.is_kept() }
     }
 }
 

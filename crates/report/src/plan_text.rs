@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::{PlanFormat, Table, short, sparkline};
 use kinstep::math::number_text;
-use kinstep::planner::{ArmPlan, LostDirection, Noise, Plan, StackRank, TaskPlan};
+use kinstep::planner::{ArmPlan, ClosestApproach, LostDirection, Noise, Plan, StackRank, TaskPlan};
 
 /// Width of the curves of the task errors [characters].
 const CURVE: usize = 64;
@@ -50,6 +50,7 @@ impl PlanFormat for PlanText {
         }
         plan.arms.iter().try_for_each(|arm| start(arm, out))?;
         approach_of(plan).iter().try_for_each(|sentence| writeln!(out, "\n{sentence}"))?;
+        plan.distance.iter().try_for_each(|closest| writeln!(out, "\n{}", came_near(closest)))?;
         writeln!(out, "\ntask error over time, logarithmic:")?;
         let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
         for arm in &plan.arms {
@@ -88,6 +89,17 @@ pub(super) fn lost_by(arm: &ArmPlan, lost: &LostDirection) -> String {
         number_text(lost.to),
         entries.join(", "),
         lost.smallest_singular_value
+    )
+}
+
+/// Says how near bodies came to each other.
+pub(super) fn came_near(closest: &ClosestApproach) -> String {
+    let ClosestApproach { minimum, pair: [one, other], t, margin, .. } = closest;
+    let verdict = if closest.is_kept() { "kept" } else { "not kept" };
+    format!(
+        "least distance {minimum:.4} m at t = {} s, between {one} and {other} (margin {} m, {verdict})",
+        short(*t),
+        short(*margin)
     )
 }
 

@@ -1,3 +1,4 @@
+use super::closest_approach::ClosestApproach;
 use super::convergence::Convergence;
 use super::lost_directions::LostDirection;
 use super::noise::Noise;
@@ -188,6 +189,8 @@ pub struct Plan {
     pub stacks: Vec<StackRank>,
     /// Which arms shared joints, and were resolved as one system.
     pub shared: Vec<SharedJoints>,
+    /// How near bodies came to each other, where something [stands around](crate::planner::Surroundings) the arms.
+    pub distance: Option<ClosestApproach>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -217,5 +220,10 @@ impl Plan {
     /// Whether every joint stayed within its limits.
     pub fn is_within_limits(&self) -> bool {
         self.arms.iter().all(|arm| arm.violations.is_empty())
+    }
+
+    /// Whether no two bodies came nearer to each other than they may.
+    pub fn keeps_distances(&self) -> bool {
+        self.distance.as_ref().is_none_or(ClosestApproach::is_kept)
     }
 }

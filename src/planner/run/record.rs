@@ -1,5 +1,7 @@
 use super::approach::{count_from, put_lead_before, put_wait_before};
+use super::closest_approach::ClosestApproach;
 use super::convergence::Convergence;
+use super::distance_watch::DistanceWatch;
 use super::lost_directions::lost_directions;
 use super::plan::{ArmPlan, Plan, PlanStatus, SharedJoints, StackRank, Stop, TaskPlan};
 use crate::planner::system::{ArmRuntime, ArmState, Coupling, Monitor, System};
@@ -19,6 +21,8 @@ pub(in crate::planner) struct Description {
     pub(in crate::planner) largest_criterion_rate: f64,
     /// How many samples lead arms to their paths before the run.
     pub(in crate::planner) lead: usize,
+    /// What is to be kept apart.
+    pub(in crate::planner) watch: Option<DistanceWatch>,
     /// The factor by which the feedback shrinks errors per step, and the steps of the row.
     pub(in crate::planner) factor: (f64, usize),
     pub(in crate::planner) warnings: Vec<String>,
@@ -78,7 +82,8 @@ impl Record {
         arms: &[ArmRuntime],
         systems: impl Iterator<Item = &'a System>,
     ) -> Plan {
-        let Description { formula, sigma, h, start, steps, mut warnings, lead, factor, .. } = description;
+        let Description { formula, sigma, h, start, steps, mut warnings, lead, watch, factor, .. } =
+            description;
         let largest_criterion_rate = description.largest_criterion_rate;
         for (plan, runtime) in self.arms.iter_mut().zip(arms) {
             take_figures(plan, &runtime.monitor);
@@ -98,6 +103,8 @@ impl Record {
             warnings.extend(damping_warning(plan, runtime.threshold));
             warnings.extend(rate_warning(&plan.name, runtime.monitor.largest_rate, largest_criterion_rate));
         }
+        let distance = watch.and_then(|watch| watch.closest(&self.arms, sigma));
+        warnings.extend(distance.as_ref().and_then(distance_warning));
         self.tasks.iter_mut().for_each(|task| put_wait_before(task, lead));
         let steps = steps + lead;
         let (status, reason) = match stop {
@@ -133,6 +140,7 @@ impl Record {
             tasks,
             stacks,
             shared,
+            distance,
             warnings,
         }
     }
@@ -240,6 +248,16 @@ fn damping_warning(plan: &ArmPlan, threshold: f64) -> Option<String> {
             plan.name, plan.damped_samples
         )
     })
+}
+
+fn distance_warning(closest: &ClosestApproach) -> Option<String> {
+    let ClosestApproach { minimum, pair: [one, other], t, margin, .. } = closest;
+    let came = if *minimum < 0.0 {
+        format!("`{one}` and `{other}` overlap by {:.6} m", -minimum)
+    } else {
+        format!("`{one}` and `{other}` came within {minimum:.6} m of each other")
+    };
+    (!closest.is_kept()).then(|| format!("{came} at t = {t:.6} s, and the margin is {margin} m"))
 }
 
 /// A criterion whose rate depends on the configuration can only be watched.

@@ -179,6 +179,10 @@ fn names_of_rows(system: &System, conflicts: &[Conflict]) -> Vec<String> {
             let name = shape.joints.get(joint).map_or("?", String::as_str);
             Some(format!("the {} limit of joint `{name}`", kind.name()))
         }
+        Conflict::Distance { pair } => {
+            let [one, other] = system.pair_names(pair)?;
+            Some(format!("the margin between `{one}` and `{other}`"))
+        }
         Conflict::Task { .. } => None,
     };
     let mut names: Vec<String> = conflicts.iter().filter_map(limit).collect();

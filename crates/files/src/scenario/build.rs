@@ -67,7 +67,10 @@ impl Scenario {
         self.law.check_joints(kinds, &arms)?;
         let arms = self.on_machines(arms)?;
         let systems = self.systems(kinds, &arms)?;
-        let builder = self.builder(formula?).arms(arms);
+        let mut builder = self.builder(formula?).arms(arms);
+        if let Some(surroundings) = self.surroundings(kinds, folder)? {
+            builder = builder.surroundings(surroundings);
+        }
         systems.into_iter().fold(builder, PlannerBuilder::system).build().map_err(|e| self.refused(&e))
     }
 
@@ -79,12 +82,17 @@ impl Scenario {
             let task = spec.task(&at, kinds, arms, self.duration.value())?;
             systems.push(JointSystem::of(&spec.arms).with_task(task));
         }
-        if self.law.law(kinds, &[])?.fast_path().is_some() {
+        let law = self.law.law(kinds, &[])?;
+        if law.fast_path().is_some() {
             return Ok(systems);
         }
         let index = |name: &String| arms.iter().position(|arm| arm.name() == name);
-        let ties: Vec<Vec<usize>> =
+        let mut ties: Vec<Vec<usize>> =
             self.task.iter().map(|task| task.arms.iter().filter_map(index).collect()).collect();
+        // A law that keeps bodies apart has to see all of them.
+        if self.collision.is_some() && law.keeps_distances() {
+            ties.push((0..arms.len()).collect());
+        }
         for set in joint_sets(arms, &ties) {
             let arms: Vec<&Arm> = set.into_iter().map(|arm| &arms[arm]).collect();
             let law = self.law.law(kinds, &common_start(&arms))?;
@@ -272,6 +280,8 @@ impl Scenario {
                     index.map_or_else(KeyPath::default, |index| KeyPath::dotted("task").index(index)),
                 )
             }
+            PlannerError::Surroundings { .. } => (ErrorKind::Scenario, KeyPath::dotted("collision")),
+            PlannerError::TooNear { .. } => (ErrorKind::Scenario, KeyPath::dotted("collision").key("margin")),
             PlannerError::Integrate(_) => (ErrorKind::Formula, KeyPath::dotted("formula")),
             _ => (ErrorKind::Scenario, KeyPath::default()),
         };

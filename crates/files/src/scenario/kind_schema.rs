@@ -32,6 +32,11 @@ pub(super) fn tasks(schema: &mut Schema) {
     extend(schema, &Kinds::builtin().tasks);
 }
 
+/// Puts the kinds of obstacles and their parameters into the schema of an obstacle.
+pub(super) fn obstacles(schema: &mut Schema) {
+    extend(schema, &Kinds::builtin().obstacles);
+}
+
 fn extend<Make: Copy>(schema: &mut Schema, kinds: &Registry<Make>) {
     schema.insert("additionalProperties".to_owned(), false.into());
     set(schema, "kind", |described| names(kinds, described));

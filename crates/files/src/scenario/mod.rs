@@ -6,6 +6,7 @@
 mod approach;
 mod build;
 mod check;
+mod collision_spec;
 mod criterion_spec;
 mod document;
 mod error;
@@ -34,6 +35,7 @@ mod task_spec;
 mod tests;
 
 pub use approach::Approach;
+pub use collision_spec::{CollisionSpec, ObstacleSpec};
 pub use criterion_spec::CriterionSpec;
 pub use document::{ScenarioText, read_text};
 pub use error::{ErrorKind, Place, ScenarioError, suggestion};
