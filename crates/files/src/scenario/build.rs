@@ -14,6 +14,7 @@ use super::noise_spec::NoiseSpec;
 use super::path_spec::PathSpec;
 use super::robots::RobotSource;
 use super::start_pose::StartPose;
+use super::time_law_spec::TimeLawSpec;
 use kinstep::formula::{Duty, Formula, FormulaTable};
 use kinstep::integrate::Starter;
 use kinstep::kind::Real;
@@ -410,11 +411,11 @@ impl PathSpec {
 
     /// As [`PathSpec::motion`], with kinds of the program's own beside the built-in ones.
     pub fn motion_with(&self, kinds: &Kinds, start: &IsometryMatrix3<f64>, duration: f64) -> Option<Motion> {
+        let path = self.path(kinds, start)?;
         let time_law = match &self.time_law {
-            Some(name) => kinds.time_laws.get(name)?,
-            None => kinds.time_laws.iter().next()?,
+            Some(law) => law.law(kinds)?,
+            None => TimeLawSpec::new(kinds.time_laws.iter().next()?.name).law(kinds)?,
         };
-        let (path, time_law) = (self.path(kinds, start)?, (time_law.make)());
         Some(match &self.center {
             Some(center) => {
                 let mut place = vector(center);

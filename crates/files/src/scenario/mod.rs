@@ -32,6 +32,7 @@ pub mod suite;
 mod task_spec;
 #[cfg(test)]
 mod tests;
+mod time_law_spec;
 
 pub use approach::Approach;
 pub use criterion_spec::CriterionSpec;
@@ -54,3 +55,4 @@ pub use robots::RobotSource;
 pub use start_pose::{OnPath, StartPose, TipPose};
 pub use study_spec::{MeasureKind, Precision, ProblemSpec, StudySpec};
 pub use task_spec::TaskSpec;
+pub use time_law_spec::TimeLawSpec;

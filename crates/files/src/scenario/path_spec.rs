@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::error::ScenarioError;
 use super::exactly::exactly;
 use super::key_path::KeyPath;
-use super::kind_reader::{KindTable, Misread, named};
+use super::kind_reader::{KindTable, Misread};
 use super::kinds::Kinds;
+use super::time_law_spec::TimeLawSpec;
 use kinstep::kind::{Parameters, Real, Value};
 use kinstep::task::{MakeCurve, Plane, TaskKind};
 
@@ -47,7 +48,7 @@ pub struct PathSpec {
     pub center: Option<Vec<Real>>,
     /// How the path is travelled in time. Default: sin2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub time_law: Option<String>,
+    pub time_law: Option<TimeLawSpec>,
     /// Turn of the tip in the course of a path of task `pose`. Default: the orientation is held.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turn: Option<TurnSpec>,
@@ -104,14 +105,9 @@ impl PathSpec {
         let mut misread: Vec<Misread> =
             self.table(at, kinds).read(&mut parameters).err().into_iter().collect();
         self.parameters = parameters;
-        let of_value = |error| Misread { error, is_of_key: false };
-        misread.extend(self.check_time_law(at, kinds).err().map(of_value));
+        let time_law = self.time_law.as_mut().map(|law| law.read(&at.key("time_law"), kinds));
+        misread.extend(time_law.and_then(Result::err));
         misread
-    }
-
-    fn check_time_law(&self, at: &KeyPath, kinds: &Kinds) -> Result<(), ScenarioError> {
-        let Some(name) = &self.time_law else { return Ok(()) };
-        named(&kinds.time_laws, &at.key("time_law"), name).map(|_| ())
     }
 
     /// Checks that the curve has the parameters of its kind and no others.
@@ -121,7 +117,7 @@ impl PathSpec {
         kinds: &Kinds,
         task: TaskKind,
     ) -> Result<(), ScenarioError> {
-        self.check_time_law(at, kinds)?;
+        self.time_law.as_ref().map_or(Ok(()), |law| law.check(&at.key("time_law"), kinds))?;
         let table = self.table(at, kinds);
         let (before, after): (&[&str], &[&str]) = match table.named()?.make {
             MakeCurve::Planar(_) => (&KEYS[..5], &KEYS[5..]),
