@@ -33,6 +33,7 @@ mod task_spec;
 #[cfg(test)]
 mod tests;
 mod time_law_spec;
+mod waypoint_file;
 
 pub use approach::Approach;
 pub use criterion_spec::CriterionSpec;

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::check::require;
 use super::error::ScenarioError;
 use super::exactly::exactly;
 use super::key_path::KeyPath;
@@ -124,7 +125,10 @@ impl PathSpec {
             MakeCurve::Centered(_) => (&[], &KEYS[4..]),
             MakeCurve::FromTip(_) => (&[], &KEYS[5..]),
         };
-        table.check(&self.parameters, (before, after, &self.given()), task == TaskKind::PositionXy)
+        table.check(&self.parameters, (before, after, &self.given()), task == TaskKind::PositionXy)?;
+        require(!self.has_orientations() || self.turn.is_none(), &at.key("turn"), || {
+            "the waypoints say how the tip is turned; take this away, or their orientations".to_owned()
+        })
     }
 
     /// Returns every length and angle that lays the curve, by its key and, in a list, its place there.
