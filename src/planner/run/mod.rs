@@ -10,6 +10,7 @@ mod plan;
 mod reachability;
 mod record;
 mod stop_criteria;
+mod time_scale;
 
 pub use convergence::Convergence;
 pub use differences::Peak;

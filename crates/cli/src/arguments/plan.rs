@@ -32,6 +32,10 @@ pub(crate) struct PlanArguments {
     #[arg(long, requires = "out")]
     pub(crate) figures: bool,
 
+    /// Take the least duration that keeps the joints' limits of velocity, acceleration and jerk, in place of the scenario's
+    #[arg(long)]
+    pub(crate) fastest: bool,
+
     /// Lay a value over the scenario; arms by name. May be given again
     #[arg(long, value_name = "KEY.PATH=VALUE")]
     pub(crate) set: Vec<String>,
