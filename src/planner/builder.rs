@@ -260,7 +260,8 @@ fn smoothness(formula: &Formula, arms: &[ArmRuntime], warnings: &mut Vec<String>
     if least < formula.order() {
         let (id, p, power) = (formula.id(), formula.order(), least + 1);
         warnings.push(format!(
-            "the motion of arm `{arm}` has {least} continuous derivatives: errors fall like O(sigma^{power}) at best, whatever the order {p} of formula `{id}`"
+            "the motion of arm `{arm}` has {least} continuous derivative{}: errors fall like O(sigma^{power}) at best, whatever the order {p} of formula `{id}`",
+            if least == 1 { "" } else { "s" }
         ));
     }
     Some(least)

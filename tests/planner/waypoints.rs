@@ -1,10 +1,15 @@
 //! Paths through waypoints: against SciPy, against differences, and how smooth they are.
 
+use kinstep::formula::FormulaTable;
+use kinstep::integrate::StarterKind;
 use kinstep::kind::Parameters;
 use kinstep::math::rotation_vector;
 use kinstep::nalgebra::{DMatrix, DVector, Quaternion, Rotation3, UnitQuaternion, Vector3};
+use kinstep::planner::{Arm, Plan, Planner};
+use kinstep::robot::embedded;
 use kinstep::task::{
-    Ends, Path, Polyline, QuinticSpline, RotationSpline, Spline, TIME_LAWS, TimeLaw, Waypoints,
+    Ends, Motion, Path, Polyline, QuinticSpline, RotationSpline, SCurve, Sin2Sin2, Spline, TIME_LAWS,
+    TaskKind, TimeLaw, Trapezoid, Waypoints,
 };
 use proptest::prelude::*;
 use serde_json::Value;
@@ -299,4 +304,55 @@ fn time_laws_are_as_smooth_as_they_say() {
         assert!(jumps[..=smooth].iter().all(|&jump| jump < 1e-3), "{} {jumps:?}", kind.name);
         assert!(smooth == 4 || jumps[smooth + 1] > 0.1, "{} {jumps:?}", kind.name);
     }
+}
+
+/// A planar arm along a spline through four points.
+fn run_along_a_spline(formula: &str, law: Box<dyn TimeLaw>, steps: usize) -> Plan {
+    let chain = embedded::get("planar4").unwrap().chain("base", "tip").unwrap();
+    let q0 = vec![0.3, 0.3, 0.3, 0.3];
+    let start = chain.forward(&q0, &mut chain.scratch()).pose();
+    let points = [[0.0, 0.0, 0.0], [0.1, 0.05, 0.0], [0.15, -0.1, 0.0], [0.05, -0.2, 0.0]].map(Vector3::from);
+    let path = Spline::through(&Waypoints::new(points.to_vec(), None, None).unwrap(), Ends::Natural).unwrap();
+    let motion = Motion::from_pose(path, law, 2.0, &start);
+    let formula = FormulaTable::builtin().get(formula).unwrap();
+    let planner = Planner::builder()
+        .formula(formula)
+        .sigma(2.0 / steps as f64)
+        .duration(2.0)
+        .start(StarterKind::Rk8.into())
+        .arm(Arm::new("arm", chain, q0, TaskKind::PositionXy, motion));
+    let planner = match formula.optimum() {
+        Some(optimum) => planner.h(0.5 * optimum.h),
+        None => planner,
+    };
+    planner.build().unwrap().run()
+}
+
+/// With `k` continuous derivatives errors fall like the power `k + 1`, or that of the formula at a fixed h if it is less.
+#[test]
+fn formulas_show_as_much_of_their_order_as_the_path_is_smooth() {
+    let laws: [(fn() -> Box<dyn TimeLaw>, f64); 3] = [
+        (|| Box::new(Sin2Sin2), 5.0),
+        (|| Box::new(SCurve { ramp: 0.25, rounding: 1.0 }), 3.0),
+        (|| Box::new(Trapezoid { ramp: 0.25 }), 2.0),
+    ];
+    for formula in ["la6-wang-guo", "split-ab4", "split-ab5"] {
+        let order = FormulaTable::builtin().get(formula).unwrap().order() as f64;
+        for (law, most) in laws {
+            let [coarse, fine] =
+                [400, 3200].map(|steps| run_along_a_spline(formula, law(), steps).arms[0].max_error);
+            let slope = (coarse / fine).log2() / 3.0;
+            let expected = most.min(order + 1.0);
+            assert!((slope - expected).abs() < 0.35, "{formula} {expected}: {slope}");
+        }
+    }
+    let plan = run_along_a_spline("split-ab5", Box::new(Sin2Sin2), 100);
+    assert_eq!(plan.smoothness, Some(4));
+    assert!(
+        plan.warnings.iter().any(|warning| warning.contains("O(sigma^5) at best")),
+        "{:?}",
+        plan.warnings
+    );
+    let plan = run_along_a_spline("split-ab4", Box::new(Sin2Sin2), 100);
+    assert!(plan.warnings.is_empty(), "{:?}", plan.warnings);
 }

@@ -49,6 +49,7 @@ pub(super) fn run(
     clock.done("planning");
     plan.warnings.extend(rows.warnings());
     plan.warnings.extend(scenario.limit_findings(text.folder()));
+    plan.warnings.extend(scenario.timing_findings(text.folder()));
     if output.is_verbose() {
         scenario.robot_findings(text.folder()).iter().for_each(|found| output.aside(&printable(found)));
     }

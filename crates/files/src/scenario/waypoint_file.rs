@@ -10,11 +10,12 @@ use super::error::{ErrorKind, Place, ScenarioError, suggestion};
 use super::files::{find, missing};
 use super::key_path::KeyPath;
 use super::kinds::Kinds;
-use super::model::Scenario;
+use super::model::{ArmSpec, Scenario};
 use super::path_spec::PathSpec;
 use super::start_pose;
 use crate::trajectory::csv_records::{Field, Records};
 use kinstep::kind::Parameters;
+use kinstep::math::number_text;
 use kinstep::task::{TaskKind, WaypointProblem, Waypoints};
 
 /// The columns of a table, and the list that each group of them makes.
@@ -49,6 +50,21 @@ impl Scenario {
             objection.map_or(Ok(()), |problem| Err(refuse(&at.key("start_pose"), problem)))?;
         }
         Ok(self)
+    }
+
+    /// Says where the times of waypoints are stretched or shortened to the duration of the motion; tables of waypoints are
+    /// looked for from `folder`.
+    pub fn timing_findings(&self, folder: Option<&Path>) -> Vec<String> {
+        let Ok(read) = self.clone().with_waypoints_read(&Kinds::builtin(), folder) else { return Vec::new() };
+        let duration = self.duration.value();
+        let finding = |arm: &ArmSpec| {
+            let times = arm.path.parameters.numbers("times").filter(|_| arm.path.time_law.is_none())?;
+            let span = times.last()? - times.first()?;
+            let [given, taken] = [span, duration].map(number_text);
+            let is_other = (span - duration).abs() > 1e-9 * duration;
+            is_other.then(|| format!("arm `{}`: its waypoints take {given} s by their times and {taken} s by `duration`, which holds", arm.name))
+        };
+        read.arm.iter().filter_map(finding).collect()
     }
 }
 

@@ -326,7 +326,7 @@ fn a_curve_and_a_time_law_of_ones_own_are_named_in_a_path() {
     let cubic = run(&own.replace("sin2sin2", "cubic"), &kinds).unwrap();
     assert!(cubic.is_completed() && apart(&cubic.arms[0].positions[..], &plain.arms[0].positions[..]) > 1e-3);
     let message = refusal(&own.replace("\"hoop\"", "\"hop\""), &kinds);
-    assert!(message.ends_with("fourier, hoop; did you mean hoop?"), "{message}");
+    assert!(message.ends_with("spline, polyline, hoop; did you mean hoop?"), "{message}");
     let message = refusal(&own.replace("size = 0.05", "radius = 0.05"), &kinds);
     assert!(
         message.ends_with("it has plane, rotation, from, sweep, center, size, time_law, turn"),
