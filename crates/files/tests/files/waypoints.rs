@@ -169,6 +169,20 @@ fn a_time_law_is_a_word_or_a_table_and_is_written_as_it_was_read() {
     assert!(read(&word).to_toml().contains("time_law = \"s-curve\""));
 }
 
+proptest! {
+    #[test]
+    fn any_table_is_read_or_refused_at_its_place(
+        rows in prop::collection::vec("[-0-9.,eE;nainxyzqrtw \"\r]{0,24}", 0..6),
+        head in prop::sample::select(vec!["", "x,y,z\n", "t,x,y,z\n", "x,y,z,qx,qy,qz,qw\n", "x,y,z,rx,ry,rz\n", "\u{feff}x,y,z,roll,pitch,yaw\n"]),
+    ) {
+        let (folder, scenario) = with_table(&format!("{head}{}", rows.join("\n")), "");
+        if let Err(refused) = scenario.arms(Some(folder.path())) {
+            let named = ["w.csv", "arm."].iter().any(|name| refused.message.contains(name)) || refused.place.is_some();
+            prop_assert!(named, "{refused:?}");
+        }
+    }
+}
+
 fn fastest(scenario: &Scenario) -> kinstep_files::scenario::Fastest {
     scenario.fastest(&Kinds::builtin(), FormulaTable::builtin(), None, Planner::run).unwrap()
 }
