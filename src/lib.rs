@@ -4,6 +4,7 @@
 //! rationals, checked for order, error constant and zero-stability before anything runs on it), a *robot*
 //! (read from URDF) and a *law* (how redundancy is resolved). A plan is formula x robot x task x law.
 
+pub mod collision;
 pub mod formula;
 pub mod integrate;
 pub mod inverse;

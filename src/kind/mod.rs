@@ -4,6 +4,7 @@
 //! [time laws](crate::task::TIME_LAWS), [tasks](crate::task::TASKS), [laws](crate::law::LAWS),
 //! [criteria](crate::law::CRITERIA)) list them, and whatever reads, checks, lists or tests kinds walks those.
 
+mod by_joint;
 #[expect(clippy::module_inception, reason = "the file is named after the type that it holds")]
 mod kind;
 mod parameter;
@@ -12,6 +13,7 @@ mod real;
 mod registry;
 mod value;
 
+pub use by_joint::ByJoint;
 pub use kind::{DrawParameters, Kind};
 pub use parameter::{Form, Parameter, WrongForm};
 pub use parameters::Parameters;

@@ -41,10 +41,19 @@ impl Parameter {
 
     /// What speaks against a value of the right form, as the end of a sentence that begins with the key.
     pub fn objection(&self, value: &Value) -> Option<String> {
-        let Form::Positive { noun } = self.form else { return None };
-        let Value::Number(number) = value else { return None };
+        let (Form::Positive { noun } | Form::ByJoint { noun }) = self.form else { return None };
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
-        (number.value() <= 0.0).then(|| format!("{number}{unit} is not a {noun}; it is positive"))
+        let refuse = |number: &Real| {
+            (number.value() <= 0.0).then(|| format!("{number}{unit} is not a {noun}; it is positive"))
+        };
+        match value {
+            Value::Number(number) => refuse(number),
+            Value::Table(entries) => entries.iter().find_map(|(name, value)| match value {
+                Value::Number(number) => refuse(number).map(|problem| format!("joint `{name}`: {problem}")),
+                _ => None,
+            }),
+            _ => None,
+        }
     }
 }
 
@@ -70,8 +79,16 @@ pub enum Form {
     Quaternions,
     /// A word.
     Text,
+    /// One of these words.
+    OneOf(&'static [&'static str]),
     /// True or false.
     Flag,
+    /// A number above zero for all joints, or a table of such numbers by the names of joints; what it would be called in a
+    /// refusal.
+    ByJoint {
+        /// Its name with "a" before it.
+        noun: &'static str,
+    },
 }
 
 /// A value that is not of the form that was asked for.
@@ -105,6 +122,8 @@ impl Form {
                 Value::Text(_) => written.clone(),
                 _ => return Err(written.instead_of("text").into()),
             },
+            Self::OneOf(words) => one_of(words, written)?,
+            Self::ByJoint { .. } => by_joint(written)?,
             Self::Flag => match written {
                 Value::Flag(_) => written.clone(),
                 _ => return Err(written.instead_of("true or false").into()),
@@ -131,6 +150,29 @@ fn numbers(written: &Value) -> Result<Value, WrongForm> {
         .enumerate()
         .map(|(index, value)| number(value).map_err(|problem| WrongForm { index: Some(index), problem }));
     read.collect::<Result<_, _>>().map(Value::List)
+}
+
+fn one_of(words: &[&str], written: &Value) -> Result<Value, String> {
+    let known = || words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
+    match written {
+        Value::Text(text) if words.contains(&text.as_str()) => Ok(written.clone()),
+        Value::Text(text) => Err(format!("there is no \"{text}\" here; it is one of {}", known())),
+        _ => Err(written.instead_of(&format!("one of {}", known()))),
+    }
+}
+
+fn by_joint(written: &Value) -> Result<Value, String> {
+    let Value::Table(entries) = written else {
+        return number(written).map_err(|problem| match written {
+            Value::List(_) => written.instead_of("a number, or a table of numbers by the names of joints"),
+            _ => problem,
+        });
+    };
+    let entry = |(name, value): &(String, Value)| {
+        let value = number(value).map_err(|problem| format!("joint `{name}`: {problem}"))?;
+        Ok((name.clone(), value))
+    };
+    entries.iter().map(entry).collect::<Result<_, String>>().map(Value::Table)
 }
 
 fn rows(length: usize, written: &Value) -> Result<Vec<Value>, WrongForm> {
@@ -183,7 +225,7 @@ mod tests {
         assert_eq!(problem(Form::Numbers, [Value::from(1.0), true.into()]).0, Some(1));
         assert_eq!(problem(Form::Text, 1.0).1, "invalid type: floating point `1.0`, expected text");
         assert_eq!(problem(Form::Flag, "yes").1, "invalid type: string \"yes\", expected true or false");
-        assert_eq!(problem(Form::Point, Value::Table).1, "invalid type: table, expected a list");
+        assert_eq!(problem(Form::Point, Value::Table(Vec::new())).1, "invalid type: table, expected a list");
     }
 
     #[test]

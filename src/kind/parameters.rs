@@ -1,4 +1,4 @@
-use super::{Parameter, Value};
+use super::{ByJoint, Parameter, Value};
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -64,6 +64,11 @@ impl Parameters {
             <[f64; 3]>::try_from(numbers).ok()
         };
         Some(self.get(name)?.list()?.iter().filter_map(vector).collect())
+    }
+
+    /// The number or numbers of joints of that name, in the unit of their parameter.
+    pub fn by_joint(&self, name: &str) -> Option<ByJoint> {
+        ByJoint::of(self.get(name)?)
     }
 
     /// The text of that name.

@@ -17,8 +17,8 @@ pub enum Value {
     Flag(bool),
     /// Several values in their order.
     List(Vec<Value>),
-    /// A table, which no parameter is.
-    Table,
+    /// Values by name, in their order.
+    Table(Vec<(String, Value)>),
 }
 
 impl Value {
@@ -45,7 +45,7 @@ impl Value {
             Self::Text(text) => Unexpected::Str(text),
             Self::Flag(flag) => Unexpected::Bool(*flag),
             Self::List(_) => Unexpected::Other("list"),
-            Self::Table => Unexpected::Other("table"),
+            Self::Table(_) => Unexpected::Other("table"),
         };
         format!("invalid type: {unexpected}, expected {expected}")
     }
@@ -94,7 +94,7 @@ impl Serialize for Value {
             Self::Text(text) => serializer.serialize_str(text),
             Self::Flag(flag) => serializer.serialize_bool(*flag),
             Self::List(values) => values.serialize(serializer),
-            Self::Table => serializer.collect_map(std::iter::empty::<(&str, bool)>()),
+            Self::Table(entries) => serializer.collect_map(entries.iter().map(|(name, value)| (name, value))),
         }
     }
 }
@@ -111,7 +111,7 @@ impl<'de> de::Visitor<'de> for ValueVisitor {
     type Value = Value;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a number, text, a list, true or false")
+        f.write_str("a number, text, a list, a table, true or false")
     }
 
     fn visit_bool<E>(self, flag: bool) -> Result<Value, E> {
@@ -143,7 +143,10 @@ impl<'de> de::Visitor<'de> for ValueVisitor {
     }
 
     fn visit_map<A: de::MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
-        while entries.next_entry::<de::IgnoredAny, de::IgnoredAny>()?.is_some() {}
-        Ok(Value::Table)
+        let mut table = Vec::new();
+        while let Some(entry) = entries.next_entry()? {
+            table.push(entry);
+        }
+        Ok(Value::Table(table))
     }
 }

@@ -40,6 +40,11 @@ pub enum Conflict {
         /// Which of its limits.
         kind: LimitKind,
     },
+    /// The distance that two bodies are kept apart.
+    Distance {
+        /// The number of the pair, as in [`Avoidance::pairs`](super::Avoidance::pairs).
+        pair: usize,
+    },
 }
 
 /// No joint velocity meets all that is asked for and allowed: the run stops there with the status `limit` and names the rows.

@@ -1,3 +1,4 @@
+use crate::collision::Proximities;
 use crate::robot::Limits;
 use crate::task::{TaskRows, Tip};
 
@@ -23,6 +24,22 @@ pub struct Instant<'a> {
     pub tips: &'a [Tip],
     /// How the next state depends on what is resolved here, if the law [asks for it](super::Law::needs_next_state).
     pub next: Option<NextState<'a>>,
+    /// The pairs of bodies that are near, if something stands around the arms and the law
+    /// [keeps distances](super::Law::keeps_distances).
+    pub avoidance: Option<Avoidance<'a>>,
+}
+
+/// Pairs of bodies that are near, and how they are to be kept apart.
+#[derive(Clone, Copy, Debug)]
+pub struct Avoidance<'a> {
+    /// The pairs nearer than `influence`, each with its distance \[m\] and the derivatives of that by the joints.
+    pub pairs: &'a Proximities,
+    /// How near they may come \[m\].
+    pub margin: f64,
+    /// From where on they count \[m\]: more than the margin.
+    pub influence: f64,
+    /// How fast they may come nearer where they begin to count [m/s].
+    pub speed: f64,
 }
 
 /// The joint positions of the next sample as a function of what is resolved now:

@@ -4,26 +4,32 @@ use crate::robot::Limits;
 /// How fast a joint may still come nearer to a position limit, as a fraction of the way that is left per step: small enough for
 /// every row to come to rest there without passing it.
 const APPROACH: f64 = 0.1;
+/// How much nearer a velocity may come to its limit from one sample to the next, as a fraction of what is left: a velocity that
+/// ran straight into its limit would have the next samples pass it, and stands out in the differences that the rows make.
+const VELOCITY_APPROACH: f64 = 0.25;
 /// What rounding is left of an interval, as a fraction of its bounds.
 const ROUNDING: f64 = 1e-12;
 
 /// The joint velocities that keep all limits of an instant, joint by joint: those of the velocities themselves, and those of the
 /// samples that they lead to.
 ///
-/// A velocity `x` is held to
-/// - `|x| <= v`, and `|x - x_before| <= a sigma` for an acceleration limit `a`;
+/// A velocity `x = f + g`, of which the feedback part `g` is given, is held to
+/// - `|x| <= v` and `|f| <= v`, which is approached by a fraction of what is left, and `|f - f_before| <= a sigma` for an
+///   acceleration limit `a`;
 /// - `x <= k (upper - q)`, which lets a position limit be approached and not passed, and `x <= sqrt(a^2 sigma^2 + 2 a (upper -
 ///   q)) - a sigma`, from which the joint can still stop;
-/// - the next sample `q' = known + first x` with `q' <= upper`, `|q' - q| <= v sigma` and `|q' - 2 q + q_before| <= a sigma^2`.
+/// - the next sample `q' = known + first f + second g` with `q' <= upper`, `|q' - q| <= v sigma` and `|q' - 2 q + q_before| <=
+///   a sigma^2`.
 ///
-/// A joint beyond a position limit comes back at full speed.
+/// A joint beyond a position limit comes back, the faster the farther it is.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointRanges {
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
     /// Which limits these come from.
     kinds: Vec<[LimitKind; 2]>,
-    /// The positions one sample ago.
+    /// The feedforward velocities and the positions one sample ago.
+    velocity_before: Vec<f64>,
     before: Vec<f64>,
     has_before: bool,
 }
@@ -46,8 +52,11 @@ impl Side {
 struct Upwards {
     limits: Limits,
     q: f64,
-    /// The velocity and the position one sample ago.
+    /// The feedforward velocity and the position one sample ago.
     before: Option<(f64, f64)>,
+    /// The feedback part of the velocity.
+    feedback: f64,
+    /// What of the next sample does not depend on the velocity that is looked for.
     known: f64,
     first: f64,
     sigma: f64,
@@ -60,6 +69,7 @@ impl Upwards {
             limits: Limits { lower: -upper, upper: -lower, ..self.limits },
             q: -self.q,
             before: self.before.map(|(velocity, position)| (-velocity, -position)),
+            feedback: -self.feedback,
             known: -self.known,
             ..self
         }
@@ -68,19 +78,23 @@ impl Upwards {
     fn side(self) -> Side {
         let Limits { upper, velocity, acceleration, .. } = self.limits;
         let mut side = Side { value: f64::INFINITY, kind: LimitKind::Velocity };
-        side = side.at_most(velocity, LimitKind::Velocity);
+        side = side.at_most(velocity + self.feedback.min(0.0), LimitKind::Velocity);
         let left = upper - self.q;
         if left.is_finite() {
             side = side.at_most(self.towards(left).max(-velocity), LimitKind::Position);
         }
         side = side.at_most(self.leading_to(velocity * self.sigma * (1.0 - ROUNDING)), LimitKind::Velocity);
+        if let Some((before, _)) = self.before.filter(|_| velocity.is_finite()) {
+            let nearer = before + VELOCITY_APPROACH * (velocity - before).max(0.0);
+            side = side.at_most(nearer + self.feedback, LimitKind::Velocity);
+        }
         if let Some((before, position)) = self.before.filter(|_| acceleration.is_finite()) {
             let change = acceleration * self.sigma * (1.0 - ROUNDING);
-            side = side.at_most(before + change, LimitKind::Acceleration);
+            side = side.at_most(before + change + self.feedback, LimitKind::Acceleration);
             side = side
                 .at_most(self.leading_to(self.q - position + change * self.sigma), LimitKind::Acceleration);
             // What can no longer be braked down to is not asked for.
-            side.value = side.value.max(before - change);
+            side.value = side.value.max(before - change + self.feedback);
         }
         side
     }
@@ -117,27 +131,31 @@ impl JointRanges {
             lower: vec![f64::NEG_INFINITY; joints],
             upper: vec![f64::INFINITY; joints],
             kinds: vec![[LimitKind::Velocity; 2]; joints],
+            velocity_before: vec![0.0; joints],
             before: vec![0.0; joints],
             has_before: false,
         }
     }
 
-    /// Takes note of where the joints are at a sample.
-    pub(super) fn accept(&mut self, instant: &Instant<'_>) {
+    /// Takes note of where the joints are at a sample, and of their feedforward velocities there.
+    pub(super) fn accept(&mut self, instant: &Instant<'_>, feedforward: &[f64]) {
+        self.velocity_before.copy_from_slice(feedforward);
         self.before.copy_from_slice(instant.q);
         self.has_before = true;
     }
 
-    /// Finds the ranges of an instant.
+    /// Finds the ranges of the velocities of an instant that have this feedback part.
     ///
     /// # Errors
     /// [`Infeasible`] where the limits of one joint contradict each other.
-    pub(super) fn find(&mut self, instant: &Instant<'_>) -> Result<(), Infeasible> {
+    pub(super) fn find(&mut self, instant: &Instant<'_>, feedback: &[f64]) -> Result<(), Infeasible> {
         for (joint, (&q, limits)) in instant.q.iter().zip(instant.limits).enumerate() {
-            let (known, first) =
-                instant.next.as_ref().map_or((q, instant.sigma), |next| (next.known[joint], next.first));
-            let before = self.has_before.then(|| (instant.previous_velocity[joint], self.before[joint]));
-            let upwards = Upwards { limits: *limits, q, before, known, first, sigma: instant.sigma };
+            let (feedback, sigma) = (feedback[joint], instant.sigma);
+            let (known, first) = instant.next.as_ref().map_or((q, sigma), |next| {
+                (next.known[joint] + (next.second - next.first) * feedback, next.first)
+            });
+            let before = self.has_before.then(|| (self.velocity_before[joint], self.before[joint]));
+            let upwards = Upwards { limits: *limits, q, before, feedback, known, first, sigma };
             let (upper, lower) = (upwards.side(), upwards.mirrored().side());
             (self.lower[joint], self.upper[joint]) = (-lower.value, upper.value);
             self.kinds[joint] = [lower.kind, upper.kind];
@@ -154,6 +172,13 @@ impl JointRanges {
     /// Which limit the lower or upper side of a joint comes from.
     pub(super) fn kind(&self, joint: usize, is_upper: bool) -> LimitKind {
         self.kinds[joint][usize::from(is_upper)]
+    }
+
+    /// Takes back what rounding left a velocity outside.
+    pub(super) fn clamp(&self, velocity: &mut [f64]) {
+        for (velocity, (lower, upper)) in velocity.iter_mut().zip(self.lower.iter().zip(&self.upper)) {
+            *velocity = velocity.clamp(*lower, *upper);
+        }
     }
 
     /// Whether a velocity of every joint lies within.

@@ -21,12 +21,14 @@ pub struct Resolution {
     pub damped: bool,
     /// The rate [1/s] at which the null-space criteria pulled here; zero without any.
     pub criterion_rate: f64,
+    /// How many rows of a stack of tasks could not be met beside those that come before them.
+    pub missing_rows: usize,
 }
 
 impl Default for Resolution {
     /// Far from every singularity, without a criterion.
     fn default() -> Self {
-        Self { smallest_singular_value: f64::INFINITY, damped: false, criterion_rate: 0.0 }
+        Self { smallest_singular_value: f64::INFINITY, damped: false, criterion_rate: 0.0, missing_rows: 0 }
     }
 }
 
@@ -90,8 +92,20 @@ pub trait Law: Send {
         LinearityKind::Split
     }
 
+    /// Whether its answers keep the limits of all joints. Then a run may start with joints outside their position limits: they are
+    /// brought back.
+    fn keeps_limits(&self) -> bool {
+        false
+    }
+
     /// Whether [`Instant::next`] is to be there.
     fn needs_next_state(&self) -> bool {
+        false
+    }
+
+    /// Whether [`Instant::avoidance`] is to be there: pairs of bodies that are near. All arms of a plan that has something around
+    /// them are then one system, so that the law sees every pair.
+    fn keeps_distances(&self) -> bool {
         false
     }
 
@@ -142,8 +156,16 @@ impl Law for Box<dyn Law> {
         (**self).kind()
     }
 
+    fn keeps_limits(&self) -> bool {
+        (**self).keeps_limits()
+    }
+
     fn needs_next_state(&self) -> bool {
         (**self).needs_next_state()
+    }
+
+    fn keeps_distances(&self) -> bool {
+        (**self).keeps_distances()
     }
 
     fn threshold(&self) -> f64 {

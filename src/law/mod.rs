@@ -4,8 +4,11 @@
 //! that a task ties together). It is prepared once for the system's [`SystemShape`] and then resolves [`Instant`] after
 //! instant; what it can not meet it says by [`Infeasible`].
 
+mod criteria_sum;
 mod criterion;
+mod damped;
 mod damping;
+mod distance_rows;
 mod fixed_rows;
 mod infeasible;
 mod instant;
@@ -14,26 +17,46 @@ mod joint_ranges;
 mod law;
 mod law_kind;
 mod least_norm;
+mod limited;
+mod network;
+mod prioritized;
 mod pseudoinverse;
 mod quadratic_program;
+mod saturated;
 mod shape;
 mod stacked;
+mod task_stack;
 #[cfg(test)]
 mod trial;
+mod weighted;
 
 pub use criterion::{
-    CRITERIA, Criterion, CriterionKind, JointLimits, MakeCriterion, Manipulability, Posture,
+    CRITERIA, Clearance, Criterion, CriterionKind, JointLimits, MakeCriterion, Manipulability, Posture,
 };
+pub use damped::{Damped, Damping};
 pub use infeasible::{Conflict, Infeasible, LimitKind};
-pub use instant::{Instant, JointVelocity, NextState};
+pub use instant::{Avoidance, Instant, JointVelocity, NextState};
 pub use law::{Law, LinearityKind, Resolution};
 pub use law_kind::{Criteria, LawKind, MakeLaw};
+pub use limited::{Limited, RangeMethod};
+pub use network::{Network, NetworkKind, RecurrentNetwork};
+pub use prioritized::Prioritized;
 pub use pseudoinverse::Pseudoinverse;
-pub use quadratic_program::QuadraticProgram;
+pub use quadratic_program::{ActiveSetMethod, QuadraticProgram};
+pub use saturated::{NullSpaceSaturation, Saturated};
 pub use shape::{SystemShape, TaskShape};
+pub use weighted::Weighted;
 
 /// Every built-in law; the first is the one that is taken unless another is named.
-pub const LAWS: &[LawKind] = &[pseudoinverse::KIND, quadratic_program::KIND];
+pub const LAWS: &[LawKind] = &[
+    pseudoinverse::KIND,
+    damped::KIND,
+    weighted::KIND,
+    prioritized::KIND,
+    quadratic_program::KIND,
+    saturated::KIND,
+    network::KIND,
+];
 
 pub(crate) use damping::is_regular;
 pub(crate) use least_norm::least_norm;

@@ -1,5 +1,7 @@
+use super::criteria_sum::CriteriaSum;
 use super::damping::{DampedInverse, default_threshold, is_regular};
 use super::fixed_rows::FixedRows;
+use super::shape::one_priority;
 use super::stacked::StackedRows;
 use super::{
     Criteria, Criterion, Infeasible, Instant, JointVelocity, Law, LawKind, MakeLaw, Resolution, SystemShape,
@@ -22,7 +24,7 @@ use crate::task::TaskRows;
 #[derive(Default)]
 pub struct Pseudoinverse {
     given_threshold: Option<f64>,
-    criteria: Vec<Box<dyn Criterion>>,
+    criteria: CriteriaSum,
     threshold: f64,
     workspace: Option<Workspace>,
 }
@@ -31,9 +33,6 @@ pub struct Pseudoinverse {
 struct Workspace {
     gram: Gram,
     rotations: RowRotations,
-    /// The sum of the criteria, and one of them.
-    c: Vec<f64>,
-    summand: Vec<f64>,
     /// `phi'` and `-k e` of all tasks.
     feedforward: Vec<f64>,
     feedback: Vec<f64>,
@@ -71,18 +70,18 @@ impl Pseudoinverse {
     /// The same with a criterion for the null space; criteria add up.
     #[must_use]
     pub fn with_criterion(mut self, criterion: impl Criterion + 'static) -> Self {
-        self.criteria.push(Box::new(criterion));
+        self.criteria.push(criterion);
         self
     }
 
     /// The law with these criteria.
     pub(super) fn with_criteria(criteria: Criteria) -> Self {
-        Self { criteria, ..Self::default() }
+        Self { criteria: CriteriaSum::of(criteria), ..Self::default() }
     }
 
     /// The sum `c` of what the criteria asked for last.
-    pub(super) fn pull(&self) -> &[f64] {
-        self.workspace.as_ref().map_or(&[], |workspace| &workspace.c)
+    pub(super) fn criteria_sum(&self) -> &[f64] {
+        self.criteria.sum()
     }
 }
 
@@ -90,9 +89,7 @@ impl Law for Pseudoinverse {
     fn prepare(&mut self, shape: &SystemShape) {
         let thresholds = shape.tasks.iter().map(|task| default_threshold(task.length, task.has_angles()));
         self.threshold = self.given_threshold.unwrap_or_else(|| thresholds.fold(0.0, f64::max));
-        for criterion in &mut self.criteria {
-            criterion.prepare(shape);
-        }
+        self.criteria.prepare(shape);
         self.workspace = Some(Workspace::new(shape));
     }
 
@@ -103,11 +100,14 @@ impl Law for Pseudoinverse {
     ) -> Result<Resolution, Infeasible> {
         let Some(workspace) = &mut self.workspace else { return Err(Infeasible::default()) };
         workspace.collect(instant.tasks);
-        workspace.pull(&mut self.criteria, instant);
-        let has_criteria = !self.criteria.is_empty();
-        let resolution = workspace.resolve(instant.tasks, self.threshold, has_criteria, velocity);
-        let criterion_rate = self.criteria.iter().map(|criterion| criterion.rate_at(instant)).sum();
-        Ok(Resolution { criterion_rate, ..resolution })
+        if self.criteria.is_empty() {
+            return Ok(workspace.resolve(instant.tasks, self.threshold, None, velocity));
+        }
+        self.criteria.evaluate(instant);
+        let c = self.criteria.sum();
+        subtract_image(instant.tasks, c, &mut workspace.corrected);
+        let resolution = workspace.resolve(instant.tasks, self.threshold, Some(c), velocity);
+        Ok(Resolution { criterion_rate: self.criteria.rate_at(instant), ..resolution })
     }
 
     fn threshold(&self) -> f64 {
@@ -115,40 +115,38 @@ impl Law for Pseudoinverse {
     }
 
     fn objection(&self, shape: &SystemShape) -> Option<String> {
-        let [first, rest @ ..] = &shape.tasks[..] else { return Some("needs a task to resolve".to_owned()) };
-        if let Some(task) = rest.iter().find(|task| task.priority != first.priority) {
-            return Some(format!(
-                "meets all tasks alike, and `{}` has priority {} beside the {} of `{}`",
-                task.name, task.priority, first.priority, first.name
-            ));
-        }
-        self.criteria.iter().find_map(|criterion| criterion.objection(shape))
+        one_priority(shape).or_else(|| self.criteria.objection(shape))
     }
 
     fn fast_path(&self) -> Option<f64> {
         self.criteria.is_empty().then_some(self.threshold)
     }
 
+    fn keeps_distances(&self) -> bool {
+        self.criteria.keeps_distances()
+    }
+
     fn criterion_rate(&self) -> Option<f64> {
-        let known = self.criteria.iter().filter_map(Criterion::rate);
-        known.reduce(|sum, rate| sum + rate)
+        self.criteria.rate()
     }
 }
+
+/// The parameter of laws that are damped below a threshold.
+pub(super) const THRESHOLD: Parameter = Parameter::optional(
+    "threshold",
+    Form::Positive { noun: "threshold for singular values" },
+    "",
+    "Smallest singular value of the task Jacobian that is inverted undamped; below it the inverse is damped, and the report says so.",
+);
 
 pub(super) const KIND: LawKind = Kind::new(
     "pseudoinverse",
     "The joint velocity of least norm, by the pseudoinverse of the task Jacobian.",
-    &[Parameter::optional(
-        "threshold",
-        Form::Positive { noun: "threshold for singular values" },
-        "",
-        "Smallest singular value of the task Jacobian that is inverted undamped; below it the inverse is damped, and the report says so.",
-    )],
+    &[THRESHOLD],
     MakeLaw::WithCriteria(|given, criteria| {
         Box::new(Pseudoinverse {
             given_threshold: given.number("threshold"),
-            criteria,
-            ..Pseudoinverse::default()
+            ..Pseudoinverse::with_criteria(criteria)
         })
     }),
 );
@@ -164,8 +162,6 @@ impl Workspace {
                 _ => Gram::Stacked(StackedRows::new(shape)),
             },
             rotations: RowRotations::with_capacity(rows, joints),
-            c: vec![0.0; joints],
-            summand: vec![0.0; joints],
             feedforward: vec![0.0; rows],
             feedback: vec![0.0; rows],
             corrected: vec![0.0; rows],
@@ -184,42 +180,30 @@ impl Workspace {
         self.corrected.copy_from_slice(&self.feedforward);
     }
 
-    /// Adds the criteria up, and takes from what the tasks ask for what they would do to it.
-    fn pull(&mut self, criteria: &mut [Box<dyn Criterion>], instant: &Instant<'_>) {
-        self.c.fill(0.0);
-        for criterion in &mut *criteria {
-            criterion.velocity(instant, &mut self.summand);
-            add(&self.summand, &mut self.c);
-        }
-        if !criteria.is_empty() {
-            subtract_image(instant.tasks, &self.c, &mut self.corrected);
-        }
-    }
-
     fn resolve(
         &mut self,
         tasks: &[TaskRows],
         threshold: f64,
-        has_criteria: bool,
+        c: Option<&[f64]>,
         velocity: &mut JointVelocity<'_>,
     ) -> Resolution {
         let (bound, smallest_pivot) = self.solve(tasks, velocity);
         if is_regular(bound, smallest_pivot, threshold) {
-            if has_criteria {
-                add(&self.c, velocity.feedforward);
+            if let Some(c) = c {
+                add(c, velocity.feedforward);
             }
             return Resolution { smallest_singular_value: bound, ..Resolution::default() };
         }
-        decompose(&mut self.rotations, tasks, self.c.len());
+        decompose(&mut self.rotations, tasks, velocity.feedforward.len());
         let inverse = DampedInverse::new(&self.rotations, threshold);
         inverse.apply(&self.feedforward, velocity.feedforward);
         inverse.apply(&self.feedback, velocity.feedback);
-        if has_criteria {
+        if let Some(c) = c {
             let image = &mut self.corrected;
             image.fill(0.0);
-            subtract_image(tasks, &self.c, image);
+            subtract_image(tasks, c, image);
             inverse.add_undamped(image, velocity.feedforward);
-            add(&self.c, velocity.feedforward);
+            add(c, velocity.feedforward);
         }
         inverse.resolution()
     }

@@ -1,22 +1,13 @@
-use super::joint_ranges::JointRanges;
-use super::{
-    Conflict, Criterion, Infeasible, Instant, JointVelocity, Law, LawKind, LinearityKind, MakeLaw,
-    Pseudoinverse, Resolution, SystemShape,
-};
-use crate::kind::Kind;
+use super::limited::{Limited, RangeMethod};
+use super::{LawKind, MakeLaw, SystemShape};
+use crate::kind::{Form, Kind, Parameter, Parameters};
 use crate::math::{Constraint, LeastDistance, LeastDistanceSolver, NoSolution};
-use crate::task::TaskRows;
 
-/// The joint velocity of least norm that meets all tasks and keeps all limits: a quadratic program,
-/// minimise `1/2 |q' - c|^2` subject to `J q' = phi' - k e` and `lower <= q' <= upper`.
-///
-/// `c` is what the null-space criteria ask for. The bounds keep the limits of positions, velocities and accelerations, of the
-/// velocity itself and of the sample that it leads to; all arms that are resolved together are one problem. While no limit is
-/// active the answer is that of [`Pseudoinverse`], to the last bit; where one is, it is found by an active set method that
-/// begins where the last sample ended (Goldfarb and Idnani 1983) and allocates nothing. Where the tasks can not be met within the
-/// limits it says which rows are in conflict.
-///
-/// Near a singularity the tasks ask for what the damped inverse gives, so that the equalities can be met.
+/// How much a joint velocity off the criteria counts beside a task that is missed, unless given.
+const REGULARIZATION: f64 = 1e-8;
+
+/// The joint velocity nearest to what the criteria ask for that meets all tasks within all limits: a quadratic program, solved
+/// exactly by an active set method that begins where the last sample ended and allocates nothing ([`Limited`] has the problem).
 ///
 /// ```
 /// use kinstep::law::QuadraticProgram;
@@ -25,173 +16,146 @@ use crate::task::TaskRows;
 /// let pair = JointSystem::of(["left", "right"]).with_law(QuadraticProgram::new());
 /// # let _ = pair;
 /// ```
+pub type QuadraticProgram = Limited<ActiveSetMethod>;
+
+/// The dual active set method of Goldfarb and Idnani (Mathematical Programming 27, 1983) as a way to keep ranges:
+/// [`LeastDistanceSolver`] has it.
+///
+/// With tasks in least squares it minimises `rho |q' - c|^2 + sum w_i |J_i q' - v_i|^2` within the ranges, so that there always
+/// is an answer: with slacks `s`, `J_i q' + sqrt(rho / w_i) s_i = v_i`, it is the same problem with more unknowns.
 #[derive(Default)]
-pub struct QuadraticProgram {
-    free: Pseudoinverse,
-    workspace: Option<Workspace>,
+pub struct ActiveSetMethod {
+    regularization: Option<f64>,
+    solver: Option<LeastDistanceSolver>,
+    slacks: Slacks,
 }
 
-struct Workspace {
-    ranges: JointRanges,
-    solver: LeastDistanceSolver,
-    /// The stacked Jacobian, row after row, and what is asked of it.
-    rows: Vec<f64>,
-    values: Vec<f64>,
-    /// What minimises the criterion where nothing else is asked for.
+/// The problem with slacks.
+#[derive(Default)]
+struct Slacks {
+    weights: Vec<f64>,
     target: Vec<f64>,
-    feedforward: Vec<f64>,
-    feedback: Vec<f64>,
-    /// The tasks that rows belong to, and their places there.
-    places: Vec<(usize, usize)>,
+    equalities: Vec<f64>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    inequalities: Vec<f64>,
+    x: Vec<f64>,
 }
 
-impl std::fmt::Debug for QuadraticProgram {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("QuadraticProgram").field("free", &self.free).finish_non_exhaustive()
+impl Slacks {
+    fn new(shape: &SystemShape) -> Self {
+        let (rows, joints) = (shape.rows(), shape.joints.len());
+        let weights = shape.tasks.iter().flat_map(|task| std::iter::repeat_n(task.weight, task.rows()));
+        let unknowns = joints + rows;
+        Self {
+            weights: weights.collect(),
+            target: vec![0.0; unknowns],
+            equalities: vec![0.0; rows * unknowns],
+            lower: vec![f64::NEG_INFINITY; unknowns],
+            upper: vec![f64::INFINITY; unknowns],
+            inequalities: Vec::with_capacity(shape.pairs * unknowns),
+            x: vec![0.0; unknowns],
+        }
+    }
+
+    fn solve(
+        &mut self,
+        solver: &mut LeastDistanceSolver,
+        problem: &LeastDistance<'_>,
+        rho: f64,
+        x: &mut [f64],
+    ) -> Result<(), NoSolution> {
+        let (joints, unknowns) = (x.len(), self.x.len());
+        self.target[..joints].copy_from_slice(problem.target);
+        self.lower[..joints].copy_from_slice(problem.lower);
+        self.upper[..joints].copy_from_slice(problem.upper);
+        let rows = problem.equalities.chunks_exact(joints).zip(self.equalities.chunks_exact_mut(unknowns));
+        for (row, ((own, extended), weight)) in rows.zip(&self.weights).enumerate() {
+            extended[..joints].copy_from_slice(own);
+            extended[joints + row] = (rho / weight).sqrt();
+        }
+        self.inequalities.clear();
+        for row in problem.inequalities.chunks_exact(joints) {
+            self.inequalities.extend_from_slice(row);
+            self.inequalities.resize(self.inequalities.len() + unknowns - joints, 0.0);
+        }
+        let extended = LeastDistance {
+            target: &self.target,
+            equalities: &self.equalities,
+            lower: &self.lower,
+            upper: &self.upper,
+            inequalities: &self.inequalities,
+            ..*problem
+        };
+        solver.solve(&extended, &mut self.x)?;
+        x.copy_from_slice(&self.x[..joints]);
+        Ok(())
     }
 }
 
 impl QuadraticProgram {
-    /// The law without criteria.
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// The same with a criterion for what the tasks leave free; criteria add up.
+    /// The law with tasks in least squares, by their weights, instead of exactly: what limits do not allow is missed by as
+    /// little as possible, and `rho` is how much a joint velocity off the criteria counts beside that.
     #[must_use]
-    pub fn with_criterion(mut self, criterion: impl Criterion + 'static) -> Self {
-        self.free = self.free.with_criterion(criterion);
+    pub fn in_least_squares(mut self, rho: f64) -> Self {
+        self.set_method(ActiveSetMethod { regularization: Some(rho), ..ActiveSetMethod::default() });
         self
     }
 }
 
-impl Law for QuadraticProgram {
+impl RangeMethod for ActiveSetMethod {
     fn prepare(&mut self, shape: &SystemShape) {
-        self.free.prepare(shape);
-        let (rows, joints) = (shape.rows(), shape.joints.len());
-        let places = shape.tasks.iter().enumerate();
-        self.workspace = Some(Workspace {
-            ranges: JointRanges::with_capacity(joints),
-            solver: LeastDistanceSolver::with_capacity(joints),
-            rows: vec![0.0; rows * joints],
-            values: vec![0.0; rows],
-            target: vec![0.0; joints],
-            feedforward: vec![0.0; joints],
-            feedback: vec![0.0; joints],
-            places: places.flat_map(|(task, shape)| (0..shape.rows()).map(move |row| (task, row))).collect(),
-        });
+        let mut unknowns = shape.joints.len();
+        if self.regularization.is_some() {
+            self.slacks = Slacks::new(shape);
+            unknowns += shape.rows();
+        }
+        self.solver = Some(LeastDistanceSolver::with_capacity(unknowns));
     }
 
-    fn resolve(
-        &mut self,
-        instant: &Instant<'_>,
-        velocity: &mut JointVelocity<'_>,
-    ) -> Result<Resolution, Infeasible> {
-        let Some(workspace) = &mut self.workspace else { return Err(Infeasible::default()) };
-        let (f, g) = (&mut workspace.feedforward, &mut workspace.feedback);
-        let resolution =
-            self.free.resolve(instant, &mut JointVelocity { feedforward: &mut *f, feedback: &mut *g })?;
-        for (out, (f, g)) in velocity.feedforward.iter_mut().zip(f.iter().zip(&*g)) {
-            *out = f + g;
-        }
-        velocity.feedback.fill(0.0);
-        workspace.ranges.find(instant)?;
-        if !workspace.ranges.contains(velocity.feedforward) {
-            workspace.target.copy_from_slice(self.free.pull());
-            workspace.limit(instant.tasks, velocity.feedforward)?;
-        }
-        Ok(resolution)
-    }
-
-    fn accept(&mut self, instant: &Instant<'_>) {
-        self.free.accept(instant);
-        if let Some(workspace) = &mut self.workspace {
-            workspace.ranges.accept(instant);
+    fn solve(&mut self, problem: &LeastDistance<'_>, x: &mut [f64]) -> Result<(), NoSolution> {
+        let Some(solver) = &mut self.solver else { return Err(NoSolution::NotFinite) };
+        match self.regularization {
+            None => solver.solve(problem, x).map(drop),
+            Some(rho) => self.slacks.solve(solver, problem, rho, x),
         }
     }
 
-    fn kind(&self) -> LinearityKind {
-        LinearityKind::Total
-    }
-
-    fn needs_next_state(&self) -> bool {
+    fn takes_rows(&self) -> bool {
         true
     }
 
-    fn threshold(&self) -> f64 {
-        self.free.threshold()
-    }
-
-    fn objection(&self, shape: &SystemShape) -> Option<String> {
-        self.free.objection(shape)
-    }
-
-    fn criterion_rate(&self) -> Option<f64> {
-        self.free.criterion_rate()
-    }
-}
-
-impl Workspace {
-    /// Puts in the place of what all tasks ask for the nearest velocity to the target that asks for the same within the ranges.
-    fn limit(&mut self, tasks: &[TaskRows], velocity: &mut [f64]) -> Result<(), Infeasible> {
-        self.stack(tasks, velocity);
-        let problem = LeastDistance {
-            target: &self.target,
-            equalities: &self.rows,
-            values: &self.values,
-            lower: &self.ranges.lower,
-            upper: &self.ranges.upper,
-            inequalities: &[],
-            bounds: &[],
-        };
-        match self.solver.solve(&problem, velocity) {
-            Ok(_) => {
-                let bounds = self.ranges.lower.iter().zip(&self.ranges.upper);
-                for (velocity, (lower, upper)) in velocity.iter_mut().zip(bounds) {
-                    *velocity = velocity.clamp(*lower, *upper);
-                }
-                Ok(())
-            }
-            Err(NoSolution::Infeasible) => Err(Infeasible {
-                conflicts: self.solver.conflict().iter().map(|row| self.name(*row)).collect(),
-            }),
-            Err(NoSolution::NotFinite | NoSolution::TooManySteps) => Err(Infeasible::default()),
-        }
-    }
-
-    /// Stacks the rows of all tasks, which ask for what this velocity does.
-    fn stack(&mut self, tasks: &[TaskRows], velocity: &[f64]) {
-        let mut rows = self.rows.chunks_exact_mut(velocity.len()).zip(&mut self.values);
-        for task in tasks {
-            for (row, (stacked, value)) in (0..task.rows()).zip(&mut rows) {
-                *value = 0.0;
-                for ((entry, own), velocity) in
-                    stacked.iter_mut().zip(task.jacobian.row(row).iter()).zip(velocity)
-                {
-                    *entry = *own;
-                    *value += own * velocity;
-                }
-            }
-        }
-    }
-
-    fn name(&self, row: Constraint) -> Conflict {
-        match row {
-            Constraint::Equality(row) | Constraint::Inequality(row) => {
-                let (task, row) = self.places[row];
-                Conflict::Task { task, row }
-            }
-            Constraint::Lower(joint) => Conflict::Limit { joint, kind: self.ranges.kind(joint, false) },
-            Constraint::Upper(joint) => Conflict::Limit { joint, kind: self.ranges.kind(joint, true) },
-        }
+    fn conflict(&self) -> &[Constraint] {
+        self.solver.as_ref().map_or(&[], LeastDistanceSolver::conflict)
     }
 }
 
 pub(super) const KIND: LawKind = Kind::new(
     "qp",
     "The joint velocity of least norm that meets all tasks within the limits of positions, velocities and accelerations: a quadratic program.",
-    &[],
-    MakeLaw::WithCriteria(|_, criteria| {
-        Box::new(QuadraticProgram { free: Pseudoinverse::with_criteria(criteria), workspace: None })
-    }),
-);
+    &[
+        Parameter::optional(
+            "tasks",
+            Form::OneOf(&["equality", "least-squares"]),
+            "",
+            "Whether tasks are met exactly, or, while limits are active, as nearly as these allow. Default: equality.",
+        ),
+        Parameter::optional(
+            "regularization",
+            Form::Positive { noun: "weight of joint velocities" },
+            "",
+            "How much a joint velocity counts beside a task that is missed, with tasks in least squares. Default: 1e-8.",
+        ),
+    ],
+    MakeLaw::WithCriteria(|given, criteria| Box::new(Limited::by(method(given), criteria))),
+)
+.with_objection(|given| {
+    let is_idle = given.get("regularization").is_some() && given.text("tasks") != Some("least-squares");
+    is_idle.then(|| "`regularization` acts with tasks = \"least-squares\" only".to_owned())
+});
+
+fn method(given: &Parameters) -> ActiveSetMethod {
+    let in_least_squares = given.text("tasks") == Some("least-squares");
+    let rho = given.number("regularization").unwrap_or(REGULARIZATION);
+    ActiveSetMethod { regularization: in_least_squares.then_some(rho), ..ActiveSetMethod::default() }
+}

@@ -11,10 +11,12 @@ pub struct SystemShape {
     pub axes: Vec<usize>,
     /// The sampling gap of the run \[s\].
     pub sigma: f64,
+    /// How many pairs of bodies may have to be kept apart.
+    pub pairs: usize,
 }
 
 /// What stays the same of a task in a system.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TaskShape {
     /// The task's name.
     pub name: String,
@@ -28,6 +30,8 @@ pub struct TaskShape {
     pub joints: Vec<usize>,
     /// Its place in a stack of tasks: what comes first is met first. Zero unless it was given one.
     pub priority: usize,
+    /// Its weight among tasks that can not all be met: one unless it was given another.
+    pub weight: f64,
 }
 
 impl SystemShape {
@@ -40,12 +44,14 @@ impl SystemShape {
             length,
             joints: (0..joints).collect(),
             priority: 0,
+            weight: 1.0,
         };
         Self {
             joints: (0..joints).map(|joint| format!("joint {joint}")).collect(),
             tasks: vec![task],
             axes: vec![joints],
             sigma: 0.0,
+            pairs: 0,
         }
     }
 
@@ -65,4 +71,14 @@ impl TaskShape {
     pub fn has_angles(&self) -> bool {
         self.components.iter().any(|component| component.is_angular())
     }
+}
+
+/// What a law that meets all tasks alike has to say of a shape, as the end of a sentence that begins with "this law".
+pub(super) fn one_priority(shape: &SystemShape) -> Option<String> {
+    let [first, rest @ ..] = &shape.tasks[..] else { return Some("needs a task to resolve".to_owned()) };
+    let other = rest.iter().find(|task| task.priority != first.priority)?;
+    Some(format!(
+        "meets all tasks alike, and `{}` has priority {} beside the {} of `{}`; the law \"prioritized\" meets one after the other",
+        other.name, other.priority, first.priority, first.name
+    ))
 }

@@ -30,6 +30,7 @@ pub(super) fn resolve(law: &mut impl Law, q: &[f64], tasks: &[TaskRows]) -> ([Ve
         tasks,
         tips: &[],
         next: None,
+        avoidance: None,
     };
     let mut answer = JointVelocity { feedforward: &mut f, feedback: &mut g };
     let resolution = law.resolve(&instant, &mut answer).expect("a law that always has an answer");

@@ -177,6 +177,13 @@ impl RowRotations {
         (0..self.rows).find(|&i| rank(i) == surplus).map_or(0.0, |i| self.values[i])
     }
 
+    /// Every singular value `s_i` with its left singular vector `u_i` and with `s_i v_i`, in the order of the values.
+    pub fn directions(&self) -> impl Iterator<Item = (f64, &[f64], &[f64])> {
+        let left = self.u.chunks_exact(self.rows.max(1));
+        let right = self.rotated.chunks_exact(self.columns.max(1));
+        self.values.iter().zip(left.zip(right)).map(|(value, (u, row))| (*value, u, row))
+    }
+
     /// Adds `sum_i v_i weight(s_i) (u_i . v)` to `out`: with `weight(s) = 1/s` the pseudoinverse applied to `v`, with
     /// `s / (s^2 + lambda^2)` its damped form. A zero singular value contributes nothing.
     pub fn apply(&self, v: &[f64], weight: impl Fn(f64) -> f64, out: &mut [f64]) {

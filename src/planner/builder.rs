@@ -3,8 +3,8 @@ use super::feedback::{Feedback, feedback_step};
 use super::grid::grid;
 use super::planner::Planner;
 use super::resolve::resolved;
-use super::run::{Description, Evaluated, Noise, SynchronousField};
-use super::system::{Arm, ArmRuntime, JointIndex, JointSystem, System};
+use super::run::{Description, DistanceWatch, Evaluated, Noise, SynchronousField};
+use super::system::{Arm, ArmRuntime, JointIndex, JointSystem, Surroundings, System};
 use crate::formula::Formula;
 use crate::integrate::{IntegrateError, Multistep, Starter};
 use crate::law::LinearityKind;
@@ -26,6 +26,7 @@ pub struct PlannerBuilder {
     systems: Vec<JointSystem>,
     allow_unstable: bool,
     noise: Noise,
+    surroundings: Option<Surroundings>,
 }
 
 impl PlannerBuilder {
@@ -114,6 +115,14 @@ impl PlannerBuilder {
         self
     }
 
+    /// What stands around the arms: with it the plan says how near bodies came to each other, and laws that keep distances see
+    /// what is near.
+    #[must_use]
+    pub fn surroundings(mut self, surroundings: Surroundings) -> Self {
+        self.surroundings = Some(surroundings);
+        self
+    }
+
     /// Checks everything and allocates all that a step needs.
     ///
     /// # Errors
@@ -126,9 +135,11 @@ impl PlannerBuilder {
         let (sigma, steps) = grid(self.sigma, self.duration, &self.arms, &mut warnings)?;
         let starter = named(self.start, formula);
         let noise = Some(self.noise).filter(|noise| !noise.is_silent());
+        let watch = self.surroundings.as_ref().map(|around| watched(around, &self.arms, &mut warnings));
+        let watch = watch.transpose()?;
         let warnings_of_arms: Vec<String> = self.arms.iter().filter_map(too_few_joints).collect();
 
-        let (arms, systems) = resolved(self.arms, self.systems, sigma)?;
+        let (arms, systems) = resolved(self.arms, self.systems, sigma, self.surroundings.as_ref())?;
         let kinds: Vec<LinearityKind> = systems.iter().map(|system| system.law().kind()).collect();
         let asked = (sigma, self.allow_unstable);
         let feedback = feedback_step(formula, self.feedback, &kinds, asked, &mut warnings)?;
@@ -161,6 +172,7 @@ impl PlannerBuilder {
             steps,
             largest_criterion_rate,
             lead,
+            watch,
             factor: (factor, formula.steps()),
             smoothness,
             warnings,
@@ -188,6 +200,22 @@ fn check_arms(arms: &[Arm]) -> Result<(), PlannerError> {
         check_initial(arm)?;
     }
     Ok(())
+}
+
+/// The watch over the distances of a plan whose arms start far enough from everything.
+fn watched(
+    surroundings: &Surroundings,
+    arms: &[Arm],
+    warnings: &mut Vec<String>,
+) -> Result<DistanceWatch, PlannerError> {
+    surroundings.check(arms)?;
+    let watch = DistanceWatch::new(surroundings, arms)?;
+    watch.check_start(arms)?;
+    warnings.extend(surroundings.missing());
+    if watch.is_idle() {
+        warnings.push("there is no pair of bodies whose distance could be checked".to_owned());
+    }
+    Ok(watch)
 }
 
 /// The start that is meant, by its name.
@@ -227,7 +255,13 @@ fn check_initial(arm: &Arm) -> Result<(), PlannerError> {
         let (base, tip) = (arm.chain.base().to_owned(), arm.chain.tip().to_owned());
         return Err(PlannerError::NoJoints { arm: name(), base, tip });
     }
-    arm.chain.check_within_limits(&arm.q0).map_err(|problem| PlannerError::Initial { arm: name(), problem })
+    let is_brought_back = arm.law.as_ref().is_some_and(|law| law.keeps_limits());
+    let checked = if is_brought_back {
+        arm.chain.check_positions(&arm.q0)
+    } else {
+        arm.chain.check_within_limits(&arm.q0)
+    };
+    checked.map_err(|problem| PlannerError::Initial { arm: name(), problem })
 }
 
 fn warn_about_start(formula: &Formula, starter: &Starter<f64>, steps: usize, warnings: &mut Vec<String>) {

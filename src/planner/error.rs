@@ -1,4 +1,5 @@
 use crate::integrate::IntegrateError;
+use crate::math::number_text;
 use crate::robot::PositionsError;
 use thiserror::Error;
 
@@ -14,6 +15,27 @@ pub enum PlannerError {
     DuplicateArm {
         /// The name.
         name: String,
+    },
+    /// What is said of the surroundings makes no sense.
+    #[error("what stands around the arms: {problem}")]
+    Surroundings {
+        /// What is wrong.
+        problem: String,
+    },
+    /// Two bodies start nearer to each other than they may come.
+    #[error(
+        "`{one}` and `{other}` start {} m apart, and the margin is {} m; start elsewhere, lower the margin, or allow the pair if the two may touch",
+        number_text(round(*.distance)), number_text(*.margin)
+    )]
+    TooNear {
+        /// The machine and the link.
+        one: String,
+        /// Another of these, or an obstacle.
+        other: String,
+        /// How far they are apart \[m\]; negative where they overlap.
+        distance: f64,
+        /// How near they may come \[m\].
+        margin: f64,
     },
     /// The formula was not set.
     #[error("no formula was chosen")]
@@ -202,4 +224,9 @@ pub enum PlannerError {
     /// The stepper refused the row or the start.
     #[error(transparent)]
     Integrate(#[from] IntegrateError),
+}
+
+/// A distance to a tenth of a micrometre, as one says it.
+fn round(distance: f64) -> f64 {
+    (distance * 1e7).round() / 1e7
 }

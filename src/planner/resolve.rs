@@ -1,16 +1,24 @@
 //! Which arms form which systems.
 
 use super::PlannerError;
-use super::system::{AddedTask, Arm, ArmRuntime, JointSystem, System, check_common_starts, joint_sets};
+use super::system::{
+    AddedTask, Arm, ArmRuntime, JointSystem, Surroundings, System, check_common_starts, joint_sets,
+};
 use crate::law::Law;
 use crate::task::Task;
 
-/// The arms with their scratch memory, and the systems that they form: first those of several arms, then single arms.
+/// The arms with their scratch memory, and the systems that they form: first those of several arms, then single arms. Where a law
+/// keeps distances, all arms are one system.
 pub(super) fn resolved(
     arms: Vec<Arm>,
     mut asked: Vec<JointSystem>,
     sigma: f64,
+    surroundings: Option<&Surroundings>,
 ) -> Result<(Vec<ArmRuntime>, Vec<System>), PlannerError> {
+    let mut laws = arms.iter().map(|arm| &arm.law).chain(asked.iter().map(|system| &system.law));
+    if surroundings.is_some() && laws.any(|law| law.as_ref().is_some_and(|law| law.keeps_distances())) {
+        asked.push(JointSystem::of(arms.iter().map(Arm::name)));
+    }
     for arm in &arms {
         check_task(&*arm.task, 1, 1.0)?;
     }
@@ -30,12 +38,7 @@ pub(super) fn resolved(
     let mut runtimes: Vec<ArmRuntime> = arms.into_iter().map(|arm| ArmRuntime::new(arm, sigma)).collect();
     let mut systems = Vec::new();
     for (set, (law, tasks)) in sets.iter().chain(&apart).zip(laws) {
-        let system = System::new(&mut runtimes, set, &tasks, law, sigma);
-        systems.push(system.map_err(|objection| {
-            let arms =
-                set.iter().map(|&arm| runtimes[arm].arm.name.as_str()).collect::<Vec<_>>().join("`, `");
-            PlannerError::LawDoesNotFit { arms, objection }
-        })?);
+        systems.push(System::new(&mut runtimes, set, &tasks, law, sigma, surroundings)?);
     }
     Ok((runtimes, systems))
 }

@@ -69,7 +69,7 @@ pub(super) fn first_error(diagnostics: &[Diagnostic]) -> Option<&Diagnostic> {
 }
 
 /// Returns the first error in a sentence, and how many more there are.
-pub(super) fn summary(diagnostics: &[Diagnostic]) -> String {
+pub(crate) fn summary(diagnostics: &[Diagnostic]) -> String {
     match first_error(diagnostics) {
         Some(first) => {
             format!("line {}, column {}: {}{}", first.line, first.column, first.message, more(diagnostics))

@@ -54,6 +54,12 @@ pub fn text(name: &str) -> Result<&'static str, EmbeddedError> {
     })
 }
 
+/// Returns the text of the file with the capsules of an embedded robot (`NAME.collision.toml`), which
+/// `collision::CollisionModel::from_toml` reads; `None` where there is none.
+pub fn collision_text(name: &str) -> Option<&'static str> {
+    ROBOTS.get_file(format!("{name}.collision.toml"))?.contents_utf8()
+}
+
 fn files() -> impl Iterator<Item = (&'static str, &'static File<'static>)> {
     ROBOTS.files().filter_map(|file| {
         let path = file.path();

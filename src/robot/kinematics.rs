@@ -15,8 +15,8 @@ pub(super) type Axis<A> = [A; 6];
 /// vectors of four.
 #[derive(Debug, Clone)]
 pub(super) struct Motions {
-    sines: Vec<f64>,
-    cosines: Vec<f64>,
+    pub(super) sines: Vec<f64>,
+    pub(super) cosines: Vec<f64>,
 }
 
 /// Working memory of [`Chain::forward`]. It belongs to no robot: one per thread will do.

@@ -13,7 +13,7 @@ const OFFERED: usize = 3;
 const SHOWN: usize = 60;
 
 /// Returns up to three of `known` that look like `name`, nearest first.
-pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     let length = name.chars().count();
     if length == 0 || length > LONGEST {
         return Vec::new();
@@ -40,12 +40,12 @@ fn is_part_of(wanted: &str, candidate: &str) -> bool {
 }
 
 /// Returns `; did you mean `a`, `b` or `c`?`, or nothing when there is nothing to offer.
-pub(super) fn suggestion(nearest: &[impl AsRef<str>]) -> String {
+pub(crate) fn suggestion(nearest: &[impl AsRef<str>]) -> String {
     if nearest.is_empty() { String::new() } else { format!("; did you mean {}?", list(nearest, "or")) }
 }
 
 /// Returns names as a list in words: `` `a`, `b` or `c` ``.
-pub(super) fn list(names: &[impl AsRef<str>], conjunction: &str) -> String {
+pub(crate) fn list(names: &[impl AsRef<str>], conjunction: &str) -> String {
     let quoted: Vec<String> = names.iter().map(|name| quote(name.as_ref())).collect();
     match quoted.split_last() {
         None => String::new(),
@@ -55,7 +55,7 @@ pub(super) fn list(names: &[impl AsRef<str>], conjunction: &str) -> String {
 }
 
 /// As [`list`], with at most ten names written out.
-pub(super) fn short_list(names: &[impl AsRef<str>], conjunction: &str) -> String {
+pub(crate) fn short_list(names: &[impl AsRef<str>], conjunction: &str) -> String {
     const MOST: usize = 10;
     if names.len() <= MOST + 1 {
         return list(names, conjunction);

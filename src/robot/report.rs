@@ -7,7 +7,7 @@ use super::{Defect, Diagnostic, Severity, names};
 const SUGGESTIONS: usize = 20;
 
 /// Collects findings by byte offset.
-pub(super) struct Report<'a> {
+pub(crate) struct Report<'a> {
     text: &'a str,
     places: Places<'a>,
     found: Vec<(usize, Severity, String)>,
@@ -15,41 +15,41 @@ pub(super) struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    pub(super) fn new(text: &'a str) -> Report<'a> {
+    pub(crate) fn new(text: &'a str) -> Report<'a> {
         Report { text, places: Places::new(text), found: Vec::new(), suggestions_left: SUGGESTIONS }
     }
 
-    pub(super) fn error(&mut self, offset: usize, message: impl Into<String>) {
+    pub(crate) fn error(&mut self, offset: usize, message: impl Into<String>) {
         self.found.push((offset, Severity::Error, message.into()));
     }
 
-    pub(super) fn warning(&mut self, offset: usize, message: impl Into<String>) {
+    pub(crate) fn warning(&mut self, offset: usize, message: impl Into<String>) {
         self.found.push((offset, Severity::Warning, message.into()));
     }
 
-    pub(super) fn note(&mut self, offset: usize, message: impl Into<String>) {
+    pub(crate) fn note(&mut self, offset: usize, message: impl Into<String>) {
         self.found.push((offset, Severity::Note, message.into()));
     }
 
     /// The line of an offset, to be named in a message.
-    pub(super) fn line(&self, offset: usize) -> usize {
+    pub(crate) fn line(&self, offset: usize) -> usize {
         self.places.line(offset)
     }
 
     /// The name, with its prefix, that the file writes at an offset.
-    pub(super) fn written_name(&self, offset: usize) -> &'a str {
+    pub(crate) fn written_name(&self, offset: usize) -> &'a str {
         let rest = self.text.get(offset..).unwrap_or_default();
         let ends = |c: char| c.is_ascii_whitespace() || matches!(c, '=' | '/' | '>');
         rest.split(ends).next().unwrap_or_default()
     }
 
-    pub(super) fn defect(&self, offset: usize, reason: String) -> Defect {
+    pub(crate) fn defect(&self, offset: usize, reason: String) -> Defect {
         let (line, column) = self.places.at(offset);
         Defect { reason, line, column }
     }
 
     /// Returns "; did you mean ...?" for a name that is not known.
-    pub(super) fn suggestion<'n>(&mut self, name: &str, known: impl IntoIterator<Item = &'n str>) -> String {
+    pub(crate) fn suggestion<'n>(&mut self, name: &str, known: impl IntoIterator<Item = &'n str>) -> String {
         if self.suggestions_left == 0 {
             return String::new();
         }
@@ -58,7 +58,7 @@ impl<'a> Report<'a> {
     }
 
     /// Returns the findings by place.
-    pub(super) fn finish(mut self) -> Vec<Diagnostic> {
+    pub(crate) fn finish(mut self) -> Vec<Diagnostic> {
         self.found.sort_by_key(|&(offset, severity, _)| (offset, std::cmp::Reverse(severity)));
         let places = &self.places;
         self.found

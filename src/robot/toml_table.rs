@@ -10,10 +10,10 @@ use super::size::unbelievable;
 use crate::math::evaluate;
 
 /// A value and where it stands.
-pub(super) type Value<'a, 'i> = &'a Spanned<DeValue<'i>>;
+pub(crate) type Value<'a, 'i> = &'a Spanned<DeValue<'i>>;
 
 /// Reads a text as TOML through `read`; `None` when anything was an error.
-pub(super) fn read_toml<T>(
+pub(crate) fn read_toml<T>(
     text: &str,
     read: impl FnOnce(&Entries<'_, '_>, &mut Report<'_>) -> Option<T>,
 ) -> (Option<T>, Vec<Diagnostic>) {
@@ -33,14 +33,14 @@ pub(super) fn read_toml<T>(
 }
 
 /// A table and where it stands.
-pub(super) struct Entries<'a, 'i> {
-    pub(super) table: &'a DeTable<'i>,
-    pub(super) offset: usize,
+pub(crate) struct Entries<'a, 'i> {
+    pub(crate) table: &'a DeTable<'i>,
+    pub(crate) offset: usize,
 }
 
 impl<'a, 'i> Entries<'a, 'i> {
     /// Reports the keys that are not `known`.
-    pub(super) fn check_keys(&self, what: &str, known: &[&str], report: &mut Report<'_>) {
+    pub(crate) fn check_keys(&self, what: &str, known: &[&str], report: &mut Report<'_>) {
         for key in self.table.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {
             let suggestion = report.suggestion(key.get_ref(), known.iter().copied());
             let hint =
@@ -49,16 +49,16 @@ impl<'a, 'i> Entries<'a, 'i> {
         }
     }
 
-    pub(super) fn value(&self, key: &str) -> Option<Value<'a, 'i>> {
+    pub(crate) fn value(&self, key: &str) -> Option<Value<'a, 'i>> {
         self.table.get(key)
     }
 
     /// Where a key's value stands, or else the table.
-    pub(super) fn place(&self, key: &str) -> usize {
+    pub(crate) fn place(&self, key: &str) -> usize {
         self.value(key).map_or(self.offset, |value| value.span().start)
     }
 
-    pub(super) fn text(&self, key: &str, report: &mut Report<'_>) -> Option<&'a str> {
+    pub(crate) fn text(&self, key: &str, report: &mut Report<'_>) -> Option<&'a str> {
         let value = self.value(key)?;
         let text = value.get_ref().as_str();
         if text.is_none() {
@@ -67,7 +67,7 @@ impl<'a, 'i> Entries<'a, 'i> {
         text
     }
 
-    pub(super) fn flag(&self, key: &str, report: &mut Report<'_>) -> Option<bool> {
+    pub(crate) fn flag(&self, key: &str, report: &mut Report<'_>) -> Option<bool> {
         let value = self.value(key)?;
         let flag = value.get_ref().as_bool();
         if flag.is_none() {
@@ -77,12 +77,12 @@ impl<'a, 'i> Entries<'a, 'i> {
     }
 
     /// The finite number of believable size under a key; 0 where there is none, or none that reads.
-    pub(super) fn number(&self, key: &str, report: &mut Report<'_>) -> f64 {
+    pub(crate) fn number(&self, key: &str, report: &mut Report<'_>) -> f64 {
         self.value(key).and_then(|value| number(key, value, report)).unwrap_or(0.0)
     }
 
     /// The numbers of a list of any length.
-    pub(super) fn numbers(&self, key: &str, report: &mut Report<'_>) -> Option<Vec<f64>> {
+    pub(crate) fn numbers(&self, key: &str, report: &mut Report<'_>) -> Option<Vec<f64>> {
         let value = self.value(key)?;
         let Some(entries) = value.get_ref().as_array() else {
             wrong_type(key, "a list of numbers", value, report);
@@ -95,7 +95,7 @@ impl<'a, 'i> Entries<'a, 'i> {
     }
 
     /// The three numbers of a vector; zeros where there is none, or none that reads.
-    pub(super) fn vector(&self, key: &str, report: &mut Report<'_>) -> [f64; 3] {
+    pub(crate) fn vector(&self, key: &str, report: &mut Report<'_>) -> [f64; 3] {
         let Some(numbers) = self.numbers(key, report) else { return [0.0; 3] };
         let count = numbers.len();
         numbers.try_into().unwrap_or_else(|_| {
@@ -114,7 +114,7 @@ fn number(key: &str, value: Value<'_, '_>, report: &mut Report<'_>) -> Option<f6
 }
 
 /// Returns a number, or an infinity; never NaN.
-pub(super) fn real(key: &str, value: Value<'_, '_>, report: &mut Report<'_>) -> Option<f64> {
+pub(crate) fn real(key: &str, value: Value<'_, '_>, report: &mut Report<'_>) -> Option<f64> {
     let parsed = match value.get_ref() {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().replace('_', "").parse().ok(),
         DeValue::Integer(integer) => {
@@ -140,7 +140,7 @@ pub(super) fn real(key: &str, value: Value<'_, '_>, report: &mut Report<'_>) -> 
     number
 }
 
-pub(super) fn wrong_type(key: &str, expected: &str, value: Value<'_, '_>, report: &mut Report<'_>) {
+pub(crate) fn wrong_type(key: &str, expected: &str, value: Value<'_, '_>, report: &mut Report<'_>) {
     let found = match value.get_ref() {
         DeValue::String(text) => format!("the text {}", quote(text)),
         DeValue::Integer(number) => format!("the integer {}", quote(number.as_str())),

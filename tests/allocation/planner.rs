@@ -5,9 +5,11 @@ use kinstep::formula::FormulaTable;
 use kinstep::integrate::{
     Attempt, Decision, Method, Mode, Multistep, Ode, RatioCoefficients, RatioRow, Starter, StepController,
 };
+use kinstep::kind::{Parameters, Value};
+use kinstep::law::{CRITERIA, LAWS};
 use kinstep::nalgebra::{IsometryMatrix3, Rotation3, Vector3};
 use kinstep::planner::{Arm, Batch, Noise, Planner, PlannerBuilder};
-use kinstep::robot::embedded;
+use kinstep::robot::{Limits, embedded};
 use kinstep::scheme;
 use kinstep::task::{
     Circle, Ends, Motion, Path, Planar, Plane, Polyline, SCurve, Sin2, Spline, TaskKind, Waypoints,
@@ -107,6 +109,35 @@ fn a_thousand_steps_of_arms_with_a_common_torso_allocate_nothing() {
 fn a_thousand_steps_with_noise_allocate_nothing() {
     let noise = Noise { seed: 1, position: 1e-5, linear_velocity: 1e-5, joints: 1e-6, ..Noise::default() };
     steps_without_allocating(builder(Starter::Rk4).noise(noise).build().unwrap());
+}
+
+/// Every law of the registry with a criterion, on an arm whose limits are active for a part of the time.
+#[test]
+fn a_thousand_steps_of_every_law_allocate_nothing() {
+    let table = Value::Table(vec![("panda_joint2".to_owned(), 4.0.into())]);
+    let posture = CRITERIA.iter().find(|kind| kind.name == "posture").unwrap();
+    for kind in LAWS {
+        let given = match kind.name {
+            "weighted" => Parameters::new().with("weights", table.clone()),
+            _ => Parameters::new(),
+        };
+        let robot = embedded::get("panda").unwrap().clone();
+        let own = robot.joint("panda_joint4").unwrap().limits;
+        let robot = robot.with_limits("panda_joint4", Limits { velocity: 0.06, ..own }).unwrap();
+        let chain = robot.chain("panda_link0", "panda_link8").unwrap();
+        let q0 = vec![0.0, -0.6, 0.0, -2.2, 0.0, 1.6, 0.8];
+        let pose = chain.forward(&q0, &mut chain.scratch()).pose();
+        let motion = Motion::from_pose(
+            Planar::new(Circle { radius: 0.05 }, Plane::Yz, 0.0, 0.0, TAU),
+            Sin2,
+            2.0,
+            &pose,
+        );
+        let criterion = (posture.make)(&Parameters::new().with("rate", 1.0), &q0);
+        let law = kind.make.law(&given, vec![criterion]);
+        let arm = Arm::new("arm", chain, q0, TaskKind::Position, motion).with_law(law);
+        steps_without_allocating(scheme::dtsmp([arm], 0.001, 0.4).duration(2.0).build().unwrap());
+    }
 }
 
 #[test]

@@ -16,8 +16,8 @@ use sources::Sources;
 use table::Room;
 
 /// The rooms that are free of circles of files, and have to stay so.
-const ROOMS_WITHOUT_CIRCLES: [&str; 9] =
-    ["math", "formula", "integrate", "robot", "task", "law", "inverse", "planner", "scheme"];
+const ROOMS_WITHOUT_CIRCLES: [&str; 10] =
+    ["math", "formula", "integrate", "robot", "collision", "task", "law", "inverse", "planner", "scheme"];
 
 /// The sources as they are, and the table of DESIGN.md.
 fn as_they_are() -> (Sources, Vec<Room>) {

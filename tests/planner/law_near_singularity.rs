@@ -38,6 +38,7 @@ fn resolve(
         tasks: &[task],
         tips: &[],
         next: None,
+        avoidance: None,
     };
     let mut answer = JointVelocity { feedforward: &mut f, feedback: &mut g };
     let resolution = law.resolve(&instant, &mut answer).unwrap();

@@ -4,6 +4,7 @@ mod approach;
 mod doors;
 mod inverse;
 mod law_near_singularity;
+mod laws;
 mod noise;
 mod paper;
 mod shared;

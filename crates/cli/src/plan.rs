@@ -193,7 +193,11 @@ fn written(format: &dyn PlanFormat, plan: &Plan) -> String {
 
 fn exit(plan: &Plan) -> Exit {
     match plan.status {
-        PlanStatus::Completed if plan.is_within_limits() && plan.has_converged() => Exit::Done,
+        PlanStatus::Completed
+            if plan.is_within_limits() && plan.keeps_distances() && plan.has_converged() =>
+        {
+            Exit::Done
+        }
         PlanStatus::Completed | PlanStatus::Limit => Exit::CheckFailed,
         _ => Exit::Stopped,
     }

@@ -22,6 +22,11 @@ pub trait Criterion: Send {
     fn rate_at(&self, _instant: &Instant<'_>) -> f64 {
         self.rate().unwrap_or(0.0)
     }
+
+    /// Whether [`Instant::avoidance`] is to be there.
+    fn keeps_distances(&self) -> bool {
+        false
+    }
 }
 
 impl Criterion for Box<dyn Criterion> {
@@ -43,5 +48,9 @@ impl Criterion for Box<dyn Criterion> {
 
     fn rate_at(&self, instant: &Instant<'_>) -> f64 {
         (**self).rate_at(instant)
+    }
+
+    fn keeps_distances(&self) -> bool {
+        (**self).keeps_distances()
     }
 }

@@ -250,6 +250,7 @@ mod tests {
             tasks: &[],
             tips: &tips,
             next: None,
+            avoidance: None,
         };
         criterion.velocity(&instant, &mut c);
         (c, criterion.rate_at(&instant))

@@ -1,5 +1,6 @@
 //! Null-space criteria: one file each, one row in [`CRITERIA`].
 
+mod clearance;
 #[expect(clippy::module_inception, reason = "the file is named after the trait that it holds")]
 mod criterion;
 mod criterion_kind;
@@ -8,6 +9,7 @@ mod manipulability;
 mod posture;
 mod repetitive;
 
+pub use clearance::Clearance;
 pub use criterion::Criterion;
 pub use criterion_kind::{CriterionKind, MakeCriterion};
 pub use joint_limits::JointLimits;
@@ -16,7 +18,7 @@ pub use posture::Posture;
 
 /// Every built-in null-space criterion.
 pub const CRITERIA: &[CriterionKind] =
-    &[repetitive::KIND, joint_limits::KIND, manipulability::KIND, posture::KIND];
+    &[repetitive::KIND, joint_limits::KIND, manipulability::KIND, posture::KIND, clearance::KIND];
 
 #[cfg(test)]
 mod tests {
@@ -42,6 +44,7 @@ mod tests {
             tasks: &[],
             tips: &[],
             next: None,
+            avoidance: None,
         };
         criterion.velocity(&instant, &mut c);
         c

@@ -50,7 +50,7 @@ impl LeastDistance<'_> {
     }
 
     /// Whether all that has to be finite is, and no bound is NaN.
-    pub(super) fn is_sound(&self) -> bool {
+    pub fn is_sound(&self) -> bool {
         let finite = [self.target, self.equalities, self.values, self.inequalities];
         let bounds = [self.lower, self.upper, self.bounds];
         finite.iter().all(|list| list.iter().all(|entry| entry.is_finite()))

@@ -1,6 +1,9 @@
 use super::approach::{count_from, put_lead_before, put_wait_before};
+use super::closest_approach::ClosestApproach;
 use super::convergence::Convergence;
-use super::plan::{ArmPlan, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
+use super::distance_watch::DistanceWatch;
+use super::lost_directions::lost_directions;
+use super::plan::{ArmPlan, Plan, PlanStatus, SharedJoints, StackRank, Stop, TaskPlan};
 use crate::planner::system::{ArmRuntime, ArmState, Coupling, Monitor, System};
 use nalgebra::Vector6;
 
@@ -18,6 +21,8 @@ pub(in crate::planner) struct Description {
     pub(in crate::planner) largest_criterion_rate: f64,
     /// How many samples lead arms to their paths before the run.
     pub(in crate::planner) lead: usize,
+    /// What is to be kept apart.
+    pub(in crate::planner) watch: Option<DistanceWatch>,
     /// The factor by which the feedback shrinks errors per step, and the steps of the row.
     pub(in crate::planner) factor: (f64, usize),
     /// How many derivatives of the motions are continuous, if not all.
@@ -79,12 +84,24 @@ impl Record {
         arms: &[ArmRuntime],
         systems: impl Iterator<Item = &'a System>,
     ) -> Plan {
-        let Description { formula, sigma, h, start, steps, mut warnings, lead, factor, smoothness, .. } =
-            description;
+        let Description {
+            formula,
+            sigma,
+            h,
+            start,
+            steps,
+            mut warnings,
+            lead,
+            watch,
+            factor,
+            smoothness,
+            ..
+        } = description;
         let largest_criterion_rate = description.largest_criterion_rate;
         for (plan, runtime) in self.arms.iter_mut().zip(arms) {
             take_figures(plan, &runtime.monitor);
             plan.worst_singular_value = worst_singular_value(plan, runtime, sigma);
+            plan.lost_directions = lost_directions(plan, runtime, sigma);
             if let Some(tolerance) = runtime.arm.convergence {
                 warnings.extend(converge(plan, tolerance, factor, sigma));
             }
@@ -96,9 +113,12 @@ impl Record {
                 put_lead_before(plan, &runtime.arm, lead, sigma);
             }
             plan.violations.extend(plan.crossed_by_differences(limits(), sigma));
+            warnings.extend(return_warning(plan, runtime));
             warnings.extend(damping_warning(plan, runtime.threshold));
             warnings.extend(rate_warning(&plan.name, runtime.monitor.largest_rate, largest_criterion_rate));
         }
+        let distance = watch.and_then(|watch| watch.closest(&self.arms, sigma));
+        warnings.extend(distance.as_ref().and_then(distance_warning));
         self.tasks.iter_mut().for_each(|task| put_wait_before(task, lead));
         let steps = steps + lead;
         let (status, reason) = match stop {
@@ -111,7 +131,10 @@ impl Record {
             Some(stop) => (stop.status, Some(stop.reason)),
             None => (PlanStatus::Completed, None),
         };
-        let shared = systems.filter(|system| system.arms().count() > 1);
+        let systems: Vec<&System> = systems.collect();
+        let begins = lead as f64 * sigma;
+        let stacks = systems.iter().filter_map(|system| stack_rank(system, arms, begins)).collect();
+        let shared = systems.iter().filter(|system| system.arms().count() > 1);
         let shared =
             shared.map(|system| SharedJoints { arms: system.arm_names(), joints: system.joints_in_common() });
         let (arms, tasks) = (self.arms, self.tasks);
@@ -130,10 +153,22 @@ impl Record {
             noise,
             arms,
             tasks,
+            stacks,
             shared,
+            distance,
             warnings,
         }
     }
+}
+
+/// How much of its tasks a system could meet, if these have different priorities.
+fn stack_rank(system: &System, arms: &[ArmRuntime], begins: f64) -> Option<StackRank> {
+    let shape = system.shape();
+    let first = shape.tasks.first()?;
+    shape.tasks.iter().find(|task| task.priority != first.priority)?;
+    let (missing, at) = arms[system.arms().next()?].monitor.most_missing_rows;
+    let (rows, t) = (shape.rows(), at + begins);
+    Some(StackRank { arms: system.arm_names(), rows, rank: rows - missing.min(rows), t })
 }
 
 /// Tells apart how the arm was brought onto its path. A sentence where it was not.
@@ -203,6 +238,23 @@ fn steady_mean_square(errors: &[Vector6<f64>]) -> f64 {
     half.iter().map(Vector6::norm_squared).sum::<f64>() / half.len() as f64
 }
 
+/// What became of joints that started outside their position limits.
+fn return_warning(plan: &ArmPlan, runtime: &ArmRuntime) -> Option<String> {
+    let outside: Vec<&str> =
+        runtime.monitor.stayed_outside().map(|joint| plan.joints[joint].as_str()).collect();
+    if !outside.is_empty() {
+        let (arm, joints) = (&plan.name, outside.join("`, `"));
+        return Some(format!(
+            "arm `{arm}` started with `{joints}` outside the position limits and never came back"
+        ));
+    }
+    let returned = runtime.monitor.returned?;
+    Some(format!(
+        "arm `{}` started outside its position limits and was within them from t = {returned:.6} s on",
+        plan.name
+    ))
+}
+
 fn damping_warning(plan: &ArmPlan, threshold: f64) -> Option<String> {
     let (smallest, at) = plan.smallest_singular_value;
     (plan.damped_samples > 1).then(|| {
@@ -211,6 +263,16 @@ fn damping_warning(plan: &ArmPlan, threshold: f64) -> Option<String> {
             plan.name, plan.damped_samples
         )
     })
+}
+
+fn distance_warning(closest: &ClosestApproach) -> Option<String> {
+    let ClosestApproach { minimum, pair: [one, other], t, margin, .. } = closest;
+    let came = if *minimum < 0.0 {
+        format!("`{one}` and `{other}` overlap by {:.6} m", -minimum)
+    } else {
+        format!("`{one}` and `{other}` came within {minimum:.6} m of each other")
+    };
+    (!closest.is_kept()).then(|| format!("{came} at t = {t:.6} s, and the margin is {margin} m"))
 }
 
 /// A criterion whose rate depends on the configuration can only be watched.

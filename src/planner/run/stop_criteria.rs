@@ -158,7 +158,7 @@ pub(in crate::planner) fn check_added_tasks(system: &System, arms: &[ArmRuntime]
 
 /// Says which rows of a system can not all be met.
 pub(in crate::planner) fn infeasible(system: &System, infeasible: &Infeasible, t: f64) -> Stop {
-    let rows: Vec<String> = infeasible.conflicts.iter().map(|conflict| row_name(system, *conflict)).collect();
+    let rows = names_of_rows(system, &infeasible.conflicts);
     let rows = match &rows[..] {
         [] => "which of its rows are in conflict is not known".to_owned(),
         [only] => format!("{only} can not be met"),
@@ -171,16 +171,31 @@ pub(in crate::planner) fn infeasible(system: &System, infeasible: &Infeasible, t
     Stop { status: PlanStatus::Limit, reason }
 }
 
-fn row_name(system: &System, conflict: Conflict) -> String {
+/// What the rows in conflict are called: limits first, then tasks, with the rows of them that count unless all do.
+fn names_of_rows(system: &System, conflicts: &[Conflict]) -> Vec<String> {
     let shape = system.shape();
-    match conflict {
-        Conflict::Task { task, row } => {
-            let name = shape.tasks.get(task).map_or("?", |task| task.name.as_str());
-            format!("row {} of task `{name}`", row + 1)
-        }
+    let limit = |conflict: &Conflict| match *conflict {
         Conflict::Limit { joint, kind } => {
             let name = shape.joints.get(joint).map_or("?", String::as_str);
-            format!("the {} limit of joint `{name}`", kind.name())
+            Some(format!("the {} limit of joint `{name}`", kind.name()))
+        }
+        Conflict::Distance { pair } => {
+            let [one, other] = system.pair_names(pair)?;
+            Some(format!("the margin between `{one}` and `{other}`"))
+        }
+        Conflict::Task { .. } => None,
+    };
+    let mut names: Vec<String> = conflicts.iter().filter_map(limit).collect();
+    for (task, shape) in shape.tasks.iter().enumerate() {
+        let is_meant = |row: &usize| conflicts.contains(&Conflict::Task { task, row: *row });
+        let rows: Vec<String> = (0..shape.rows()).filter(is_meant).map(|row| (row + 1).to_string()).collect();
+        if rows.len() == shape.rows() {
+            names.push(format!("task `{}`", shape.name));
+        } else if let [only] = &rows[..] {
+            names.push(format!("row {only} of task `{}`", shape.name));
+        } else if !rows.is_empty() {
+            names.push(format!("rows {} of task `{}`", rows.join(", "), shape.name));
         }
     }
+    names
 }

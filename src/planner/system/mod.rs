@@ -12,7 +12,9 @@ mod joint_system;
 mod lead;
 mod limits;
 mod monitor;
+mod nearby;
 mod resolved;
+mod surroundings;
 
 pub use arm::Arm;
 pub use arm_state::ArmState;
@@ -20,6 +22,7 @@ pub use derivative_errors::{DerivativeErrors, derivative_errors};
 pub use joint_sets::joint_sets;
 pub use joint_system::JointSystem;
 pub use monitor::Violation;
+pub use surroundings::Surroundings;
 
 pub(super) use arm_runtime::{ArmRuntime, Coupling};
 pub(super) use bounds::{Bounds, Deviation};

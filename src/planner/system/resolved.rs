@@ -2,10 +2,13 @@ use super::arm::{Arm, tip_of};
 use super::arm_runtime::{ArmRuntime, Coupling};
 use super::joint_index::JointIndex;
 use super::joint_system::AddedTask;
+use super::nearby::Nearby;
+use super::surroundings::Surroundings;
 use crate::law::{
     Infeasible, Instant, JointVelocity, Law, LinearityKind, NextState, Pseudoinverse, Resolution,
     SystemShape, TaskShape,
 };
+use crate::planner::PlannerError;
 use crate::robot::Limits;
 use crate::task::{Task, TaskInstant, TaskRows, Tip};
 use std::ops::Range;
@@ -32,6 +35,8 @@ pub(in crate::planner) struct System {
     /// What the history contributes to the next state, where the law asks for it.
     known: Vec<f64>,
     infeasible: Option<Infeasible>,
+    /// What is near, where the law asks for it.
+    nearby: Option<Nearby>,
 }
 
 /// An arm of a system.
@@ -68,29 +73,43 @@ pub(in crate::planner) struct Moment {
 impl System {
     /// The arms of these indices as one system with further tasks. The law is the given one, or that of a single arm, or the
     /// least-norm law; the threshold of the latter is the largest of the arms' own, which keeps every arm's promise: a
-    /// singular value of the whole is at most that of a part.
+    /// singular value of the whole is at most that of a part. A law that keeps distances is shown the surroundings, if there are
+    /// any.
     pub(in crate::planner) fn new(
         arms: &mut [ArmRuntime],
         indices: &[usize],
         added: &[AddedTask],
         law: Option<Box<dyn Law>>,
         sigma: f64,
-    ) -> Result<Self, String> {
+        surroundings: Option<&Surroundings>,
+    ) -> Result<Self, PlannerError> {
         let union = Union::of(indices.iter().map(|&arm| &arms[arm].arm));
         let members: Vec<Member> =
             indices.iter().map(|&arm| Member::new(arm, &arms[arm].arm, &union)).collect();
         let tips: Vec<Tip> =
             members.iter().map(|member| tip_of(&arms[member.arm].arm.chain, member.places.clone())).collect();
         let tasks = tasks(arms, &members, added);
+        let has_own_law = law.is_some();
+        let mut law = law.unwrap_or_else(|| default_law(arms, indices, sigma));
+        let nearby = match surroundings.filter(|_| law.keeps_distances()) {
+            Some(surroundings) => {
+                let own = members.iter().map(|member| (&arms[member.arm].arm, member.places.clone()));
+                let scene = surroundings.scene(union.joints.len(), &own.collect::<Vec<_>>())?;
+                Some(Nearby::new(scene, surroundings))
+            }
+            None => None,
+        };
         let shape = SystemShape {
             tasks: task_shapes(arms, &members, &tasks),
             joints: union.names(),
             axes: tips.iter().map(|tip| tip.axes.len()).collect(),
             sigma,
+            pairs: nearby.as_ref().map_or(0, Nearby::pairs),
         };
-        let has_own_law = law.is_some();
-        let mut law = law.unwrap_or_else(|| default_law(arms, indices, sigma));
-        law.objection(&shape).map_or(Ok(()), Err)?;
+        if let Some(objection) = law.objection(&shape) {
+            let arms = members.iter().map(|member| member.name.as_str()).collect::<Vec<_>>().join("`, `");
+            return Err(PlannerError::LawDoesNotFit { arms, objection });
+        }
         law.prepare(&shape);
         let joints_apart: usize = members.iter().map(|member| member.places.len()).sum();
         let coupling = match indices.len() {
@@ -125,6 +144,7 @@ impl System {
             known: zeros,
             shape,
             infeasible: None,
+            nearby,
         })
     }
 
@@ -176,6 +196,11 @@ impl System {
     /// Where to write what the history contributes to the next state, if the law asks for it.
     pub(in crate::planner) fn known_mut(&mut self) -> Option<&mut [f64]> {
         self.law.needs_next_state().then_some(&mut self.known)
+    }
+
+    /// What the two bodies of a pair are called.
+    pub(in crate::planner) fn pair_names(&self, pair: usize) -> Option<[String; 2]> {
+        self.nearby.as_ref().map(|nearby| nearby.pair_names(pair))
     }
 
     /// Both parts of the joint velocities that were resolved last.
@@ -239,6 +264,9 @@ impl System {
             Some(factors) => (factors, &self.known),
             None => ([step, step], &self.q),
         };
+        if let Some(nearby) = &mut self.nearby {
+            nearby.look(&self.q);
+        }
         let previous_velocity = if moment.sample.is_some() { &self.previous } else { &self.latest };
         let instant = Instant {
             t: moment.t,
@@ -249,6 +277,7 @@ impl System {
             tasks: &self.rows,
             tips: &self.tips,
             next: self.law.needs_next_state().then_some(NextState { known, first, second }),
+            avoidance: self.nearby.as_ref().map(Nearby::avoidance),
         };
         let mut answer = JointVelocity { feedforward: &mut *f, feedback: &mut *g };
         let resolution = match self.law.resolve(&instant, &mut answer) {
@@ -406,6 +435,7 @@ fn task_shapes(arms: &[ArmRuntime], members: &[Member], tasks: &[TaskState]) -> 
             length: state.tips.iter().map(|&tip| arms[members[tip].arm].arm.length()).fold(0.0, f64::max),
             joints,
             priority: state.priority,
+            weight: state.weight,
         }
     };
     tasks.iter().map(shape).collect()

@@ -41,7 +41,7 @@ pub(super) fn read(text: &str, options: &UrdfOptions, report: &mut Report<'_>) -
 }
 
 /// What is refused whatever else the text holds: DTDs, excess, xacro.
-fn refused(text: &str, outline: &Outline<'_>) -> Option<(usize, String)> {
+pub(super) fn refused(text: &str, outline: &Outline<'_>) -> Option<(usize, String)> {
     match outline.stop {
         Some(Stop::Dtd(offset)) if is_web_page(text, offset) => {
             Some((offset, "this is a web page, not URDF; fetch the file itself".to_owned()))
@@ -110,7 +110,12 @@ fn report_mending(outline: &Outline<'_>, report: &mut Report<'_>) {
 }
 
 /// Says why a text is not well-formed, and where.
-fn malformed(text: &str, outline: &Outline<'_>, error: &Error, report: &Report<'_>) -> (usize, String) {
+pub(super) fn malformed(
+    text: &str,
+    outline: &Outline<'_>,
+    error: &Error,
+    report: &Report<'_>,
+) -> (usize, String) {
     let start = text.len() - text.trim_ascii_start().len();
     if !text[start..].starts_with('<') {
         let line = text[start..].lines().next().unwrap_or_default();

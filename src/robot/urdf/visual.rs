@@ -1,4 +1,4 @@
-//! `<visual>`: what links look like. Nothing here is ever an error: what can not be read is left out, with a note.
+//! `<visual>` and `<collision>`: the shapes of links. Nothing here is ever an error: what can not be read is left out, with a note.
 
 use std::collections::HashMap;
 
@@ -28,12 +28,28 @@ impl Visuals {
     /// assert_eq!(looks.notes, ["link `ball`: a shape whose `radius` is -1"]);
     /// ```
     pub fn from_urdf(text: &str) -> Self {
-        read(text)
+        read(text, "visual")
+    }
+
+    /// Returns the shapes that a URDF text gives its links for collision checks (`<collision>`), without colours; what can not
+    /// be read is left out, with a note.
+    ///
+    /// ```
+    /// use kinstep::robot::{Shape, Visuals};
+    /// let shapes = Visuals::collision_from_urdf(
+    ///     r#"<robot name="ball"> <link name="ball">
+    ///          <collision> <geometry> <sphere radius="0.1"/> </geometry> </collision>
+    ///        </link> </robot>"#,
+    /// );
+    /// assert_eq!(shapes.visuals[0].shape, Shape::Sphere { radius: 0.1 });
+    /// ```
+    pub fn collision_from_urdf(text: &str) -> Self {
+        read(text, "collision")
     }
 }
 
-/// Reads the looks of all links.
-fn read(text: &str) -> Visuals {
+/// Reads the shapes of all links that stand in elements of that name.
+fn read(text: &str, what: &str) -> Visuals {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut looks = Visuals::default();
     if text.len() > MAX_BYTES {
@@ -46,17 +62,17 @@ fn read(text: &str) -> Visuals {
         return looks;
     }
     match Document::parse(&outline.mended(text)) {
-        Ok(document) => read_links(document.root_element(), &mut looks),
+        Ok(document) => read_links(document.root_element(), what, &mut looks),
         Err(error) => looks.notes.push(format!("the text is not well-formed: {error}")),
     }
     looks
 }
 
-fn read_links(root: Node<'_, '_>, looks: &mut Visuals) {
+fn read_links(root: Node<'_, '_>, what: &str, looks: &mut Visuals) {
     let palette = palette(root);
     for link in element::children_named(root, "link") {
         let Some(name) = link.attribute("name") else { continue };
-        for visual in element::children_named(link, "visual") {
+        for visual in element::children_named(link, what) {
             if looks.visuals.len() == MOST {
                 looks.notes.push(format!("there are more than {MOST} shapes; the others are left out"));
                 return;

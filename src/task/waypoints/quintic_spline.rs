@@ -1,4 +1,4 @@
-use nalgebra::{Matrix2, Matrix2x3, Matrix2x5, Vector3, stack};
+use nalgebra::{Matrix2, Matrix2x3, Matrix2x5, Vector3};
 
 /// How a spline begins and ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -180,7 +180,9 @@ impl Row {
         let right = before.map_or(Matrix2x3::zeros(), |b| b.right[1])
             + after.map_or(Matrix2x3::zeros(), |a| a.right[0]);
         let next = after.map_or(Matrix2::zeros(), |a| a.across);
-        Self { own, next, right: stack![right, Matrix2::zeros()] }
+        let mut columns = Matrix2x5::zeros();
+        columns.fixed_columns_mut::<3>(0).copy_from(&right);
+        Self { own, next, right: columns }
     }
 }
 

@@ -91,35 +91,38 @@ fn jet_at(knots: &[f64], rotations: &[Rotation3<f64>], ends: Ends, i: usize) -> 
     if ends == Ends::Clamped && (i == 0 || i == last) {
         return [Vector3::zeros(); 3];
     }
-    let is_closed = ends == Ends::Periodic;
-    let (i, period) = if is_closed { (i % last, knots[last] - knots[0]) } else { (i, 0.0) };
-    // Five neighbours where there are as many; at the ends of an open path they lie to one side.
-    let (low, high) = if is_closed {
-        (i as isize - REACH as isize, i as isize + REACH as isize)
+    let (i, seen, own) = if ends == Ends::Periodic {
+        let i = i % last;
+        (i, around(knots, i), REACH)
     } else {
+        // At the ends of an open path the neighbours lie to one side.
         let low = i.saturating_sub(REACH).min(last.saturating_sub(2 * REACH));
-        (low as isize, (low + 2 * REACH).min(last) as isize)
+        let high = (low + 2 * REACH).min(last);
+        (i, (low..=high).map(|k| (k, knots[k] - knots[i])).collect(), i - low)
     };
-    let place = |k: isize| {
-        let (turns, k) =
-            if is_closed { (k.div_euclid(last as isize), k.rem_euclid(last as isize)) } else { (0, k) };
-        (k as usize, turns as f64)
-    };
-    let at = |k: isize| {
-        let (k, turns) = place(k);
-        knots[k] + turns * period - knots[i]
-    };
-    let steps: Vec<f64> = (low..=high).map(at).collect();
-    let own = (i as isize - low) as usize;
-    let seen = |k: isize| rotation_vector(&(rotations[i].inverse() * rotations[place(k).0]));
-    let mut logarithms = vec![Vector3::zeros(); steps.len()];
-    for n in own + 1..steps.len() {
-        logarithms[n] = nearest(seen(low + n as isize), &logarithms[n - 1]);
+    let logarithm = |n: usize| rotation_vector(&(rotations[i].inverse() * rotations[seen[n].0]));
+    let mut logarithms = vec![Vector3::zeros(); seen.len()];
+    for n in own + 1..seen.len() {
+        logarithms[n] = nearest(logarithm(n), &logarithms[n - 1]);
     }
     for n in (0..own).rev() {
-        logarithms[n] = nearest(seen(low + n as isize), &logarithms[n + 1]);
+        logarithms[n] = nearest(logarithm(n), &logarithms[n + 1]);
     }
+    let steps: Vec<f64> = seen.iter().map(|(_, step)| *step).collect();
     polynomial_jet(&steps, &logarithms)
+}
+
+/// The waypoints around `i` on a closed path, and how far away they are by their parameters.
+fn around(knots: &[f64], i: usize) -> Vec<(usize, f64)> {
+    let last = knots.len() - 1;
+    let period = knots[last] - knots[0];
+    let neighbour = |offset: usize| {
+        // So many periods ahead that nothing is negative.
+        let place = i + REACH * last + offset - REACH;
+        let turns = (place / last) as f64 - REACH as f64;
+        (place % last, knots[place % last] + turns * period - knots[i])
+    };
+    (0..=2 * REACH).map(neighbour).collect()
 }
 
 /// Of all vectors of the same rotation the one that is nearest to another: turns go on beyond pi.

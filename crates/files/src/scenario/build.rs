@@ -9,6 +9,7 @@ use super::approach::{Approach, TOLERANCE, reach};
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
 use super::kinds::Kinds;
+use super::law_spec::LawSpec;
 use super::model::{ArmSpec, Mount, Scenario};
 use super::noise_spec::NoiseSpec;
 use super::path_spec::PathSpec;
@@ -65,9 +66,13 @@ impl Scenario {
             return Err(all);
         }
         let arms: Vec<Arm> = arms.into_iter().collect::<Result<_, _>>()?;
+        self.law.check_joints(kinds, &arms)?;
         let arms = self.on_machines(arms)?;
         let systems = self.systems(kinds, &arms)?;
-        let builder = self.builder(formula?).arms(arms);
+        let mut builder = self.builder(formula?).arms(arms);
+        if let Some(surroundings) = self.surroundings(kinds, folder)? {
+            builder = builder.surroundings(surroundings);
+        }
         systems.into_iter().fold(builder, PlannerBuilder::system).build().map_err(|e| self.refused(&e))
     }
 
@@ -79,12 +84,17 @@ impl Scenario {
             let task = spec.task(&at, kinds, arms, self.duration.value())?;
             systems.push(JointSystem::of(&spec.arms).with_task(task));
         }
-        if self.law.law(kinds, &[])?.fast_path().is_some() {
+        let law = self.law.law(kinds, &[])?;
+        if law.fast_path().is_some() {
             return Ok(systems);
         }
         let index = |name: &String| arms.iter().position(|arm| arm.name() == name);
-        let ties: Vec<Vec<usize>> =
+        let mut ties: Vec<Vec<usize>> =
             self.task.iter().map(|task| task.arms.iter().filter_map(index).collect()).collect();
+        // A law that keeps bodies apart has to see all of them.
+        if self.collision.is_some() && law.keeps_distances() {
+            ties.push((0..arms.len()).collect());
+        }
         for set in joint_sets(arms, &ties) {
             let arms: Vec<&Arm> = set.into_iter().map(|arm| &arms[arm]).collect();
             let law = self.law.law(kinds, &common_start(&arms))?;
@@ -166,10 +176,15 @@ impl Scenario {
         machine: &[&Arm],
     ) -> Result<Arm, ScenarioError> {
         let at = KeyPath::dotted("arm").key(&spec.name);
-        let chain = chain(&at, spec, folder)?.mounted(&spec.mount.pose());
+        let chain = chain(&at, spec, &self.law, folder)?.mounted(&spec.mount.pose());
         let given: Vec<f64> = spec.q0.iter().map(Real::value).collect();
         if !given.is_empty() || spec.start_pose.is_none() {
-            chain.check_within_limits(&given).map_err(|problem| refused_positions(&at, &problem))?;
+            let checked = if self.law.law(kinds, &[])?.keeps_limits() {
+                chain.check_positions(&given)
+            } else {
+                chain.check_within_limits(&given)
+            };
+            checked.map_err(|problem| refused_positions(&at, &problem))?;
         }
         let held = positions_in_common(&chain, machine);
         let solve =
@@ -267,6 +282,8 @@ impl Scenario {
                     index.map_or_else(KeyPath::default, |index| KeyPath::dotted("task").index(index)),
                 )
             }
+            PlannerError::Surroundings { .. } => (ErrorKind::Scenario, KeyPath::dotted("collision")),
+            PlannerError::TooNear { .. } => (ErrorKind::Scenario, KeyPath::dotted("collision").key("margin")),
             PlannerError::Integrate(_) => (ErrorKind::Formula, KeyPath::dotted("formula")),
             _ => (ErrorKind::Scenario, KeyPath::default()),
         };
@@ -302,7 +319,11 @@ fn common_start(arms: &[&Arm]) -> Vec<f64> {
 fn refused_positions(at: &KeyPath, problem: &PositionsError) -> ScenarioError {
     let at = at.key("q0");
     let at = problem.index().map_or(at.clone(), |index| at.index(index));
-    ScenarioError::at(ErrorKind::Scenario, &at, problem)
+    let remedy = match problem {
+        PositionsError::OutsideLimits(_) => "; laws that keep limits, such as \"qp\", bring a joint back",
+        _ => "",
+    };
+    ScenarioError::at(ErrorKind::Scenario, &at, format!("{problem}{remedy}"))
 }
 
 /// Says why two arms with a joint in common can not be planned as they stand.
@@ -358,9 +379,9 @@ pub(super) fn read_robot(
     Ok((source, robot))
 }
 
-fn chain(at: &KeyPath, spec: &ArmSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
+fn chain(at: &KeyPath, spec: &ArmSpec, law: &LawSpec, folder: Option<&Path>) -> Result<Chain, ScenarioError> {
     let (source, robot) = read_robot(at, spec, folder)?;
-    let (robot, tip) = spec.tooled(at, spec.changed(at, robot, folder)?)?;
+    let (robot, tip) = spec.tooled(at, spec.changed(at, robot, law, folder)?)?;
     let chain = robot.chain(&spec.base, &tip).map_err(|e| {
         let key = if robot.link(&spec.base).is_none() { "base" } else { "tip" };
         let is_free = matches!(e, ChainError::UnsupportedJoint { .. });

@@ -69,6 +69,7 @@ impl Scenario {
             found.extend(check_arm(&arms.key(&arm.name), arm, kinds));
         }
         found.extend(self.check_tasks(kinds));
+        found.extend(self.check_surroundings(kinds));
         // How many steps there are is worth a word only when they are numbers of seconds at all.
         if found[0].is_ok() {
             found.push(self.check_size());

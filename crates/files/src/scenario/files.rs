@@ -73,6 +73,12 @@ impl Scenario {
                 arm.limits = Some(reference(&path, into)?);
             }
         }
+        if let Some(collision) = &mut moved.collision {
+            for named in [&mut collision.srdf, &mut collision.model].into_iter().flatten() {
+                let path = find(named, folder).ok_or_else(|| missing(named, folder))?;
+                *named = reference(&path, into)?;
+            }
+        }
         let mut rows: Vec<PathBuf> = Vec::new();
         let (texts, files): (Vec<&String>, Vec<&String>) =
             self.formulas.iter().partition(|named| named.trim_start().starts_with("[[formula]]"));

@@ -4,6 +4,7 @@ use schemars::Schema;
 use serde_json::{Map, Value, json};
 
 use super::kinds::Kinds;
+use super::law_spec::ACCELERATION_LIMIT;
 use kinstep::kind::{Form, Parameter, Registry};
 
 /// Puts the curves and their parameters into the schema of a path.
@@ -23,6 +24,9 @@ pub(super) fn time_laws() -> Schema {
 /// Puts the laws and their parameters into the schema of `[law]`.
 pub(super) fn laws(schema: &mut Schema) {
     extend(schema, &Kinds::builtin().laws);
+    let limit = &ACCELERATION_LIMIT;
+    let described = format!("[{}] {}", limit.unit, limit.description);
+    set(schema, limit.name, |_| with_description(form(limit), &described));
 }
 
 /// Puts the criteria and their parameters into the schema of a criterion.
@@ -33,6 +37,11 @@ pub(super) fn criteria(schema: &mut Schema) {
 /// Puts the tasks and their parameters into the schema of a task.
 pub(super) fn tasks(schema: &mut Schema) {
     extend(schema, &Kinds::builtin().tasks);
+}
+
+/// Puts the kinds of obstacles and their parameters into the schema of an obstacle.
+pub(super) fn obstacles(schema: &mut Schema) {
+    extend(schema, &Kinds::builtin().obstacles);
 }
 
 fn extend<Make: Copy>(schema: &mut Schema, kinds: &Registry<Make>) {
@@ -82,6 +91,10 @@ fn form(parameter: &Parameter) -> Value {
         Form::Vectors => list(of_length(real, 3, 3)),
         Form::Quaternions => list(of_length(real, 4, 4)),
         Form::Text => json!({ "type": "string" }),
+        Form::OneOf(words) => json!({ "type": "string", "enum": words }),
+        Form::ByJoint { .. } => {
+            json!({ "anyOf": [real, { "type": "object", "additionalProperties": real }] })
+        }
         Form::Flag => json!({ "type": "boolean" }),
     }
 }

@@ -1,13 +1,14 @@
 //! The kinds that a scenario can name.
 
 use super::key_path::{KeyPath, Step};
+use kinstep::collision::{MakeObstacle, OBSTACLES, ObstacleKind};
 use kinstep::kind::Registry;
 use kinstep::law::{CRITERIA, CriterionKind, LAWS, LawKind, MakeCriterion, MakeLaw};
 use kinstep::task::{
     AddedTaskKind, CURVES, CurveKind, MakeCurve, MakeTask, MakeTimeLaw, TASKS, TIME_LAWS, TimeLawKind,
 };
 
-/// The curves, time laws, laws, null-space criteria and tasks that a scenario can name: the built-in ones, and those that a
+/// The curves, time laws, laws, null-space criteria, tasks and obstacles that a scenario can name: the built-in ones, and those that a
 /// program adds.
 ///
 /// ```
@@ -54,6 +55,8 @@ pub struct Kinds {
     pub criteria: Registry<MakeCriterion>,
     /// Tasks beside those of the arms.
     pub tasks: Registry<MakeTask>,
+    /// Obstacles.
+    pub obstacles: Registry<MakeObstacle>,
 }
 
 impl Default for Kinds {
@@ -71,6 +74,7 @@ impl Kinds {
             laws: Registry::of(LAWS),
             criteria: Registry::of(CRITERIA),
             tasks: Registry::of(TASKS),
+            obstacles: Registry::of(OBSTACLES),
         }
     }
 
@@ -109,6 +113,13 @@ impl Kinds {
         self
     }
 
+    /// The same with one more kind of obstacle, in place of one of that name.
+    #[must_use]
+    pub fn with_obstacle(mut self, kind: ObstacleKind) -> Self {
+        self.obstacles.add(kind);
+        self
+    }
+
     /// The names of which one is to stand at a place of a scenario, if it is the place of a kind.
     pub(super) fn names_at(&self, path: &KeyPath) -> Option<Vec<&'static str>> {
         let keys: Vec<&str> = path.steps().iter().filter_map(Step::as_key).collect();
@@ -120,6 +131,7 @@ impl Kinds {
             ["law", "kind"] => Some(self.laws.names()),
             ["law", "criterion", "kind"] => Some(self.criteria.names()),
             ["task", .., "kind"] => Some(self.tasks.names()),
+            ["obstacle", .., "kind"] => Some(self.obstacles.names()),
             _ => None,
         }
     }

@@ -6,6 +6,7 @@
 mod approach;
 mod build;
 mod check;
+mod collision_spec;
 mod criterion_spec;
 mod document;
 mod error;
@@ -37,6 +38,7 @@ mod time_law_spec;
 mod waypoint_file;
 
 pub use approach::Approach;
+pub use collision_spec::{CollisionSpec, ObstacleSpec};
 pub use criterion_spec::CriterionSpec;
 pub use document::{ScenarioText, read_text};
 pub use error::{ErrorKind, Place, ScenarioError, suggestion};

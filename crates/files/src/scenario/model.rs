@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::approach::Approach;
+use super::collision_spec::{CollisionSpec, ObstacleSpec, obstacle_table};
 use super::error::ScenarioError;
 use super::exactly::exactly;
 use super::key_path::KeyPath;
@@ -60,6 +61,12 @@ pub struct Scenario {
     /// Tasks over the tips of several arms, beside their own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub task: Vec<TaskSpec>,
+    /// What is to be kept apart. Default: nothing is looked at.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub collision: Option<CollisionSpec>,
+    /// What stands still around the arms.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub obstacle: Vec<ObstacleSpec>,
 }
 
 /// One arm: a chain of a robot, where it stands, how it begins and what its tip follows.
@@ -165,6 +172,11 @@ impl Scenario {
             let keys: [&[&str]; 2] = [&["kind", "arms"], &[]];
             let table = KindTable { at: &at, kinds: &kinds.tasks, kind: &task.kind, keys };
             misread.extend(table.read(&mut task.parameters).err());
+        }
+        for (index, obstacle) in self.obstacle.iter_mut().enumerate() {
+            let at = KeyPath::dotted("obstacle").index(index);
+            let table = obstacle_table(&at, kinds, &obstacle.kind);
+            misread.extend(table.read(&mut obstacle.parameters).err());
         }
         misread
     }

@@ -7,6 +7,7 @@ use super::document::read_text;
 use super::error::{ErrorKind, Place, ScenarioError};
 use super::files;
 use super::key_path::KeyPath;
+use super::law_spec::LawSpec;
 use super::model::{ArmSpec, Scenario};
 use crate::trajectory::LimitsFile;
 use kinstep::kind::Real;
@@ -90,11 +91,12 @@ fn by_file(
 }
 
 impl ArmSpec {
-    /// Returns the arm's robot, calibrated and with its locked joints held.
+    /// Returns the arm's robot, calibrated, with its locked joints held and within all limits that the scenario has.
     pub(super) fn changed(
         &self,
         at: &KeyPath,
         robot: Robot,
+        law: &LawSpec,
         folder: Option<&Path>,
     ) -> Result<Robot, ScenarioError> {
         let mut robot = robot;
@@ -111,7 +113,7 @@ impl ArmSpec {
                 .with_locked(joint, &numbers)
                 .map_err(|e| ScenarioError::at(ErrorKind::Robot, &at.key("lock").key(joint), e))?;
         }
-        Ok(robot)
+        law.limited(robot)
     }
 
     /// Returns the robot with the arm's tool put on, and the link at which the chain then ends.

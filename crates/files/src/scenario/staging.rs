@@ -32,7 +32,8 @@ impl Scenario {
             let machine = known.unwrap_or(drafts.len());
             if known.is_none() {
                 let (source, robot) = read_robot(&at, spec, folder)?;
-                drafts.push(Draft { owner: spec, source, robot: spec.changed(&at, robot, folder)? });
+                let robot = spec.changed(&at, robot, &self.law, folder)?;
+                drafts.push(Draft { owner: spec, source, robot });
             }
             let (robot, tip) = spec.tooled(&at, drafts[machine].robot.clone())?;
             drafts[machine].robot = robot;

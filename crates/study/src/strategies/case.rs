@@ -201,6 +201,8 @@ impl OrderCase {
             problem: None,
             arm: vec![arm],
             task: Vec::new(),
+            collision: None,
+            obstacle: Vec::new(),
         }
     }
 }

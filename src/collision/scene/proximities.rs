@@ -1,0 +1,57 @@
+//! Pairs that are near, and how their distances change.
+
+use crate::collision::Separation;
+
+/// A pair and how far it is apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Proximity {
+    /// The number of the pair in its scene ([`Scene::pair_names`](super::Scene::pair_names)).
+    pub pair: usize,
+    /// How far it is apart, where and in which direction.
+    pub separation: Separation,
+}
+
+/// Pairs that are near, each with the derivatives of its distance by the system's joints: what
+/// [`PlacedScene::within`](super::PlacedScene::within) finds.
+#[derive(Debug, Clone)]
+pub struct Proximities {
+    columns: usize,
+    found: Vec<Proximity>,
+    rows: Vec<f64>,
+}
+
+impl Proximities {
+    pub(super) fn with_capacity(pairs: usize, columns: usize) -> Proximities {
+        Proximities { columns, found: Vec::with_capacity(pairs), rows: Vec::with_capacity(pairs * columns) }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.found.clear();
+        self.rows.clear();
+    }
+
+    /// Adds a pair, and returns its row of zeros.
+    pub(super) fn push(&mut self, proximity: Proximity) -> &mut [f64] {
+        self.found.push(proximity);
+        let begin = self.rows.len();
+        self.rows.resize(begin + self.columns, 0.0);
+        &mut self.rows[begin..]
+    }
+
+    /// Returns the number of pairs that were found.
+    pub fn len(&self) -> usize {
+        self.found.len()
+    }
+
+    /// Returns whether no pair was found.
+    pub fn is_empty(&self) -> bool {
+        self.found.is_empty()
+    }
+
+    /// Returns the pairs in the order of the scene, each with the derivatives of its distance by the system's joints \[m/rad\] or
+    /// \[1\].
+    pub fn iter(&self) -> impl Iterator<Item = (&Proximity, &[f64])> {
+        let row = |index: usize| &self.rows[index * self.columns..(index + 1) * self.columns];
+        self.found.iter().enumerate().map(move |(index, proximity)| (proximity, row(index)))
+    }
+}
