@@ -1,4 +1,5 @@
 //! Paths through waypoints: against SciPy, against differences, and how smooth they are.
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::formula::FormulaTable;
 use kinstep::integrate::StarterKind;
@@ -45,7 +46,7 @@ fn quintic_splines_and_all_their_derivatives_are_those_of_scipy() {
         let spline = QuinticSpline::new(&numbers(&case["knots"]), &vectors(&case["points"]), ends);
         for (order, theirs) in case["derivatives"].as_array().unwrap().iter().enumerate() {
             let theirs = vectors(theirs);
-            let largest = theirs.iter().map(|vector| vector.norm()).fold(0.0, f64::max);
+            let largest = theirs.iter().map(Vector3::norm).fold(0.0, f64::max);
             for (at, theirs) in numbers(&case["at"]).into_iter().zip(theirs) {
                 let off = (spline.derivative(at, order) - theirs).norm() / largest;
                 assert!(off < 1e-10, "{} {order} {at}: {off:e}", ends.name());
@@ -121,7 +122,7 @@ fn paths(
 
 /// The first four derivatives at `s`, of the polynomial through nine places to one side.
 fn one_sided(f: &dyn Fn(f64) -> Vector3<f64>, s: f64, step: f64) -> [Vector3<f64>; 5] {
-    let matrix = DMatrix::from_fn(9, 9, |row, column| (row as f64).powi(column as i32));
+    let matrix = DMatrix::from_fn(9, 9, |row, column| (row as f64).powf(column as f64));
     let lu = matrix.lu();
     let mut derivatives = [Vector3::zeros(); 5];
     for axis in 0..3 {
@@ -130,7 +131,7 @@ fn one_sided(f: &dyn Fn(f64) -> Vector3<f64>, s: f64, step: f64) -> [Vector3<f64
         let mut factorial = 1.0;
         for (order, derivative) in derivatives.iter_mut().enumerate() {
             factorial *= (order as f64).max(1.0);
-            derivative[axis] = coefficients[order] * factorial / step.powi(order as i32);
+            derivative[axis] = coefficients[order] * factorial / step.powf(order as f64);
         }
     }
     derivatives

@@ -9,6 +9,7 @@ use kinstep_files::scenario::suggestion;
 use kinstep_files::trajectory::{ColumnMap, Interpolation, KnownJoint, ReadOptions, TimeUnit};
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "they are switches of a command")]
 pub(crate) struct PlanArguments {
     /// The scenario, a TOML file (`kinstep schema scenario` has its keys)
     pub(crate) scenario: Option<PathBuf>,

@@ -1,4 +1,5 @@
 //! Waypoints in scenarios and in tables beside them, and the least duration of a motion.
+#![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use std::path::Path;
 
