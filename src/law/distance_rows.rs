@@ -54,8 +54,7 @@ impl DistanceRows {
         self.pairs.clear();
         let Some(avoidance) = instant.avoidance else { return };
         let sigma = instant.sigma;
-        let (first, second) =
-            instant.next.map_or((sigma, sigma), |next| (next.first.max(0.0), next.second));
+        let (first, second) = instant.next.map_or((sigma, sigma), |next| (next.first.max(0.0), next.second));
         let fastest = avoidance.speed / (avoidance.influence - avoidance.margin);
         let rate = fastest.min(APPROACH / first.max(sigma));
         for (proximity, row) in avoidance.pairs.iter() {

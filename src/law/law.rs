@@ -92,6 +92,12 @@ pub trait Law: Send {
         LinearityKind::Split
     }
 
+    /// Whether its answers keep the limits of all joints. Then a run may start with joints outside their position limits: they are
+    /// brought back.
+    fn keeps_limits(&self) -> bool {
+        false
+    }
+
     /// Whether [`Instant::next`] is to be there.
     fn needs_next_state(&self) -> bool {
         false
@@ -148,6 +154,10 @@ impl Law for Box<dyn Law> {
 
     fn kind(&self) -> LinearityKind {
         (**self).kind()
+    }
+
+    fn keeps_limits(&self) -> bool {
+        (**self).keeps_limits()
     }
 
     fn needs_next_state(&self) -> bool {

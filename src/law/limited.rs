@@ -146,6 +146,10 @@ impl<M: RangeMethod> Law for Limited<M> {
         self.workspace.ranges.accept(instant, &self.workspace.feedforward);
     }
 
+    fn keeps_limits(&self) -> bool {
+        true
+    }
+
     fn needs_next_state(&self) -> bool {
         true
     }

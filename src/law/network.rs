@@ -74,8 +74,9 @@ struct Equation<'a> {
     residual: &'a mut [f64],
     x: &'a mut [f64],
     rate: f64,
-    /// The largest entry of the residual.
+    /// The largest entry of the residual, and the largest sum of what it is the difference of.
     largest: f64,
+    size: f64,
 }
 
 impl Default for RecurrentNetwork {
@@ -155,7 +156,6 @@ impl RangeMethod for RecurrentNetwork {
         let Some(running) = self.running.as_mut().filter(|_| problem.is_sound()) else {
             return Err(NoSolution::NotFinite);
         };
-        let size = problem.values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         let mut equation = Equation {
             problem,
             kind: self.kind,
@@ -165,6 +165,7 @@ impl RangeMethod for RecurrentNetwork {
             x,
             rate: running.rate,
             largest: f64::INFINITY,
+            size: 0.0,
         };
         equation.counted.fill(true);
         equation.decompose();
@@ -174,7 +175,7 @@ impl RangeMethod for RecurrentNetwork {
                 return Err(NoSolution::NotFinite);
             }
             running.stepper.evaluate(&mut equation);
-            if equation.largest <= self.tolerance * size {
+            if equation.largest <= self.tolerance * equation.size {
                 return Ok(());
             }
         }
@@ -203,11 +204,13 @@ impl Field<f64> for Equation<'_> {
         for (x, (lower, upper)) in self.x.iter_mut().zip(ranges) {
             *x = x.max(*lower).min(*upper);
         }
-        self.largest = 0.0;
+        (self.largest, self.size) = (0.0, 0.0);
         let rows = self.problem.equalities.chunks_exact(joints).zip(self.problem.values);
         for (residual, (row, value)) in self.residual.iter_mut().zip(rows) {
             *residual = value - dot(row, self.x);
             self.largest = self.largest.max(residual.abs());
+            let terms = row.iter().zip(&*self.x).map(|(entry, x)| (entry * x).abs());
+            self.size = self.size.max(value.abs() + terms.sum::<f64>());
         }
         if self.kind == NetworkKind::Zeroing && self.recount() {
             self.decompose();
@@ -302,21 +305,20 @@ mod tests {
     use crate::math::LeastDistanceSolver;
     use proptest::prelude::*;
 
-    /// Every built-in row that can run a network.
-    fn rows() -> Vec<String> {
-        let shape = SystemShape::of_one_task(3, 7, 1.0);
-        let can = |id: &String| RecurrentNetwork::of_row(id).objection(&shape).is_none();
-        FormulaTable::builtin().iter().map(|formula| formula.id().to_owned()).filter(can).collect()
-    }
+    /// Rows of several kinds: of the paper, of one step, of few and of many steps, and a split one.
+    const ROWS: [&str; 5] = ["la6-wang-guo", "la2-euler", "la4-ssp32", "split-ab4", "la8-24"];
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(12))]
+        #![proptest_config(ProptestConfig::with_cases(32))]
 
         #[test]
         fn it_settles_at_the_solution_of_the_quadratic_program_whatever_row_integrates_it(
-            equalities in prop::collection::vec(-1.0..1.0_f64, 21), inside in prop::collection::vec(-0.8..0.8_f64, 7),
-            target in prop::collection::vec(-1.5..1.5_f64, 7), place in any::<prop::sample::Index>(),
+            entries in prop::collection::vec(-0.3..0.3_f64, 21), inside in prop::collection::vec(-0.8..0.8_f64, 7),
+            target in prop::collection::vec(-1.5..1.5_f64, 7), row in prop::sample::select(&ROWS[..]),
         ) {
+            // Far from singular, with whatever is active: how fast it settles is another question.
+            let mut equalities = entries;
+            equalities.iter_mut().step_by(8).for_each(|entry| *entry += 1.0);
             let values: Vec<f64> = equalities.chunks(7).map(|row| dot(row, &inside)).collect();
             let problem = LeastDistance {
                 target: &target,
@@ -329,10 +331,7 @@ mod tests {
             };
             let mut exact = [0.0; 7];
             LeastDistanceSolver::with_capacity(7).solve(&problem, &mut exact).expect("there is a point inside");
-            // The more joints are free, the faster it settles.
-            prop_assume!(exact.iter().filter(|x| x.abs() < 1.0).count() > 4);
-            let rows = rows();
-            let row = &rows[place.index(rows.len())];
+            prop_assume!(exact[..3].iter().all(|x| x.abs() < 1.0));
             let mut network = RecurrentNetwork::of_row(row);
             network.prepare(&SystemShape::of_one_task(3, 7, 1.0));
             let mut x = [0.0; 7];

@@ -253,7 +253,13 @@ fn check_initial(arm: &Arm) -> Result<(), PlannerError> {
         let (base, tip) = (arm.chain.base().to_owned(), arm.chain.tip().to_owned());
         return Err(PlannerError::NoJoints { arm: name(), base, tip });
     }
-    arm.chain.check_within_limits(&arm.q0).map_err(|problem| PlannerError::Initial { arm: name(), problem })
+    let is_brought_back = arm.law.as_ref().is_some_and(|law| law.keeps_limits());
+    let checked = if is_brought_back {
+        arm.chain.check_positions(&arm.q0)
+    } else {
+        arm.chain.check_within_limits(&arm.q0)
+    };
+    checked.map_err(|problem| PlannerError::Initial { arm: name(), problem })
 }
 
 fn warn_about_start(formula: &Formula, starter: &Starter<f64>, steps: usize, warnings: &mut Vec<String>) {

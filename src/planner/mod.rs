@@ -23,7 +23,10 @@ pub use error::PlannerError;
 pub use feedback::Feedback;
 pub use grid::{MAX_SAMPLE_BYTES, sample_bytes};
 pub use planner::Planner;
-pub use run::{ArmPlan, ClosestApproach, Convergence, Noise, Peak, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
+pub use run::{
+    ArmPlan, ClosestApproach, Convergence, LostDirection, Noise, Peak, Plan, PlanStatus, SharedJoints,
+    StackRank, Stop, TaskPlan,
+};
 pub use system::{
     Arm, ArmState, DerivativeErrors, JointSystem, Surroundings, Violation, derivative_errors, joint_sets,
 };

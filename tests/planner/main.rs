@@ -10,3 +10,4 @@ mod paper;
 mod shared;
 mod side_by_side;
 mod stops;
+mod surroundings;

@@ -34,6 +34,8 @@ struct Document<'a> {
     arms: Vec<Arm<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     tasks: Vec<Task<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    stacks: Vec<Stack<'a>>,
     shared: Vec<Shared<'a>>,
     distance: Option<Distance<'a>>,
     warnings: &'a [String],
@@ -91,10 +93,44 @@ struct Arm<'a> {
     /// What it is at the sample where that bound was least; null where that is not known.
     smallest_singular_value_at_most: Option<f64>,
     damped_samples: usize,
+    /// The directions that the arm lost near singularities; nothing is known of arms that are resolved together.
+    lost_directions: Vec<Lost>,
+    /// The largest distance of a joint at the end from where it started [rad or m].
+    drift: f64,
     limits: Limits<'a>,
     start_pose: Option<StartPose<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     convergence: Option<Convergence>,
+}
+
+/// A direction of its task that an arm lost: from when until when [s], its unit vector (linear; angular) and the smallest singular
+/// value where it was worst.
+#[derive(Serialize)]
+struct Lost {
+    from: f64,
+    to: f64,
+    direction: [f64; 6],
+    smallest_singular_value: f64,
+}
+
+impl Lost {
+    fn of(lost: &planner::LostDirection) -> Self {
+        Self {
+            from: lost.from,
+            to: lost.to,
+            direction: lost.direction.into(),
+            smallest_singular_value: lost.smallest_singular_value,
+        }
+    }
+}
+
+/// How much of a stack of tasks of different priorities could be met, where that was least.
+#[derive(Serialize)]
+struct Stack<'a> {
+    arms: &'a [String],
+    rows: usize,
+    rank: usize,
+    t: f64,
 }
 
 /// How the feedback brought an arm in that started off its path; what never happens is null.
@@ -144,6 +180,7 @@ impl<'a> Document<'a> {
             noise: plan.noise.as_ref().map(Noise::of),
             arms: plan.arms.iter().map(Arm::of).collect(),
             tasks: plan.tasks.iter().map(Task::of).collect(),
+            stacks: plan.stacks.iter().map(Stack::of).collect(),
             shared: plan.shared.iter().map(|s| Shared { arms: &s.arms, joints: &s.joints }).collect(),
             distance: plan.distance.as_ref().map(Distance::of),
             warnings: &plan.warnings,
@@ -172,6 +209,12 @@ impl<'a> Task<'a> {
     }
 }
 
+impl<'a> Stack<'a> {
+    fn of(stack: &'a planner::StackRank) -> Self {
+        Self { arms: &stack.arms, rows: stack.rows, rank: stack.rank, t: stack.t }
+    }
+}
+
 impl<'a> Arm<'a> {
     fn of(arm: &'a ArmPlan) -> Self {
         let violations = arm.violations.iter().map(|v| Violation {
@@ -193,6 +236,8 @@ impl<'a> Arm<'a> {
             smallest_singular_value_at_least: arm.smallest_singular_value.0,
             smallest_singular_value_at_most: arm.worst_singular_value,
             damped_samples: arm.damped_samples,
+            lost_directions: arm.lost_directions.iter().map(Lost::of).collect(),
+            drift: arm.drift(),
             limits: Limits { ok: arm.violations.is_empty(), violations: violations.collect() },
             convergence: arm.convergence.as_ref().map(|convergence| Convergence {
                 initial_error: convergence.initial_error,

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::{PlanFormat, Table, short, sparkline};
 use kinstep::math::number_text;
-use kinstep::planner::{ArmPlan, ClosestApproach, Noise, Plan, TaskPlan};
+use kinstep::planner::{ArmPlan, ClosestApproach, LostDirection, Noise, Plan, StackRank, TaskPlan};
 
 /// Width of the curves of the task errors [characters].
 const CURVE: usize = 64;
@@ -39,6 +39,12 @@ impl PlanFormat for PlanText {
         for task in &plan.tasks {
             writeln!(out, "\n{}", kept_together(task))?;
         }
+        for stack in &plan.stacks {
+            writeln!(out, "\n{}", rank_of(stack))?;
+        }
+        for arm in &plan.arms {
+            arm.lost_directions.iter().try_for_each(|lost| writeln!(out, "\n{}", lost_by(arm, lost)))?;
+        }
         if plan.noise.is_some() {
             writeln!(out, "\nroot mean square of the error in the second half: {}", mean_squares(plan))?;
         }
@@ -71,6 +77,29 @@ pub(super) fn came_near(closest: &ClosestApproach) -> String {
         "least distance {minimum:.4} m at t = {} s, between {one} and {other} (margin {} m, {verdict})",
         short(*t),
         short(*margin)
+    )
+}
+
+/// Says how much of a stack of tasks could be met.
+pub(super) fn rank_of(stack: &StackRank) -> String {
+    let StackRank { arms, rows, rank, t } = stack;
+    let of = format!("the stack of tasks of {} has {rows} rows", arms.join(" and "));
+    if rank == rows {
+        return format!("{of}, and all could be met at all times");
+    }
+    format!("{of}, of which {rank} could be met beside those before them at t = {} s", number_text(*t))
+}
+
+/// Says which direction an arm lost, and when.
+pub(super) fn lost_by(arm: &ArmPlan, lost: &LostDirection) -> String {
+    let entries: Vec<String> = lost.direction.iter().map(|entry| format!("{entry:.2}")).collect();
+    format!(
+        "{} lost a direction from {} to {} s: ({}), with a singular value of {:.2e} at worst",
+        arm.name,
+        number_text(lost.from),
+        number_text(lost.to),
+        entries.join(", "),
+        lost.smallest_singular_value
     )
 }
 

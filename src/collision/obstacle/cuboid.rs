@@ -10,7 +10,12 @@ pub(super) const KIND: ObstacleKind = Kind::new(
     &[
         Parameter::required("center", Form::Point, "m", "Its middle."),
         Parameter::required("size", Form::Point, "m", "The lengths of its sides along its own x, y and z."),
-        Parameter::optional("rpy", Form::Point, "rad", "Roll, pitch and yaw about the world's axes. Default: none."),
+        Parameter::optional(
+            "rpy",
+            Form::Point,
+            "rad",
+            "Roll, pitch and yaw about the world's axes. Default: none.",
+        ),
     ],
     |given| {
         let turn = vector(given, "rpy");

@@ -41,7 +41,8 @@ mod tests {
             .with("size", list([0.4, 1.0, 1.6]))
             .with("rpy", list([0.0, std::f64::consts::FRAC_PI_2, 0.0]));
         assert!((height(made("box", turned).expect("a box")) - 0.7).abs() < 1e-15);
-        let floor = Parameters::new().with("point", list([5.0, 0.0, -1.0])).with("normal", list([0.0, 0.0, 3.0]));
+        let floor =
+            Parameters::new().with("point", list([5.0, 0.0, -1.0])).with("normal", list([0.0, 0.0, 3.0]));
         assert!((height(made("half-space", floor).expect("a floor")) - 0.9).abs() < 1e-15);
     }
 

@@ -1,8 +1,8 @@
 //! Null-space criteria: one file each, one row in [`CRITERIA`].
 
+mod clearance;
 #[expect(clippy::module_inception, reason = "the file is named after the trait that it holds")]
 mod criterion;
-mod clearance;
 mod criterion_kind;
 mod joint_limits;
 mod manipulability;

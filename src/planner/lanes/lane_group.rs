@@ -386,8 +386,9 @@ mod tests {
         let mut arms: Vec<_> = turns.iter().map(|turned| arm(task, *turned)).collect();
         let system = |arm: usize| LaneMember { arm, system: arm };
         let members: Vec<_> = (0..arms.len()).map(system).collect();
-        let mut systems: Vec<_> =
-            (0..arms.len()).map(|arm| System::new(&mut arms, &[arm], &[], None, 1e-3, None).unwrap()).collect();
+        let mut systems: Vec<_> = (0..arms.len())
+            .map(|arm| System::new(&mut arms, &[arm], &[], None, 1e-3, None).unwrap())
+            .collect();
         let mut lanes = LaneGroup::<A>::new(&arms, &systems, &members).unwrap();
         let mut x = Vec::new();
         for joint in 0..7 {

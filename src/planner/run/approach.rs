@@ -33,6 +33,9 @@ pub(super) fn put_lead_before(plan: &mut ArmPlan, arm: &Arm, steps: usize, sigma
     plan.errors.splice(0..0, errors);
     plan.violations.iter_mut().for_each(|violation| violation.t += time);
     plan.smallest_singular_value.1 += time;
+    for lost in &mut plan.lost_directions {
+        (lost.from, lost.to) = (lost.from + time, lost.to + time);
+    }
     if let Some(reached) = plan.convergence.as_mut().and_then(|convergence| convergence.reached.as_mut()) {
         *reached += time;
     }

@@ -1,8 +1,8 @@
+use super::closest_approach::ClosestApproach;
+use super::plan::ArmPlan;
 use crate::collision::Scene;
 use crate::planner::PlannerError;
 use crate::planner::system::{Arm, Surroundings};
-use super::closest_approach::ClosestApproach;
-use super::plan::ArmPlan;
 
 /// The bodies of a plan, to be looked at sample after sample once the run is over: in a step they cost nothing then.
 #[derive(Clone, Debug)]

@@ -7,6 +7,7 @@ mod differences;
 mod distance_watch;
 mod ensemble;
 mod field;
+mod lost_directions;
 mod noise;
 mod plan;
 mod reachability;
@@ -16,8 +17,9 @@ mod stop_criteria;
 pub use closest_approach::ClosestApproach;
 pub use convergence::Convergence;
 pub use differences::Peak;
+pub use lost_directions::LostDirection;
 pub use noise::Noise;
-pub use plan::{ArmPlan, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
+pub use plan::{ArmPlan, Plan, PlanStatus, SharedJoints, StackRank, Stop, TaskPlan};
 
 pub(super) use distance_watch::DistanceWatch;
 pub(super) use ensemble::Ensemble;

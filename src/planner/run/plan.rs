@@ -1,5 +1,6 @@
 use super::closest_approach::ClosestApproach;
 use super::convergence::Convergence;
+use super::lost_directions::LostDirection;
 use super::noise::Noise;
 use crate::planner::system::Violation;
 use nalgebra::Vector6;
@@ -106,6 +107,8 @@ pub struct ArmPlan {
     pub worst_singular_value: Option<f64>,
     /// On how many samples the law damped its answer.
     pub damped_samples: usize,
+    /// The directions that it lost near singularities, where and how long; nothing is known of arms that are resolved together.
+    pub lost_directions: Vec<LostDirection>,
     /// Joint limits crossed, each where it was worst.
     pub violations: Vec<Violation>,
     /// How the feedback brought the arm in, where it was allowed to start off its path.
@@ -119,6 +122,13 @@ impl ArmPlan {
     pub fn position(&self, n: usize) -> &[f64] {
         let joints = self.joints.len();
         &self.positions[n * joints..(n + 1) * joints]
+    }
+
+    /// The largest distance [rad or m] of a joint at the end of the run from where it started.
+    pub fn drift(&self) -> f64 {
+        let last = self.positions.len().saturating_sub(self.joints.len());
+        let ends = self.positions.iter().zip(&self.positions[last..]);
+        ends.map(|(start, end)| (end - start).abs()).fold(0.0, f64::max)
     }
 
     /// The joint velocities [rad/s or m/s] of sample `n`.
@@ -135,6 +145,19 @@ pub struct SharedJoints {
     pub arms: Vec<String>,
     /// The joints that move two of them or more.
     pub joints: Vec<String>,
+}
+
+/// How much of a stack of tasks of different priorities could be met.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StackRank {
+    /// The arms that it is of.
+    pub arms: Vec<String>,
+    /// How many rows all tasks have.
+    pub rows: usize,
+    /// How many of them could be met beside those before them, where that was least.
+    pub rank: usize,
+    /// When that was \[s\].
+    pub t: f64,
 }
 
 /// The outcome of a run: joint trajectories of all arms on one time grid, whether it ended well, and what it met.
@@ -162,6 +185,8 @@ pub struct Plan {
     pub arms: Vec<ArmPlan>,
     /// What became of the tasks beside those of the arms.
     pub tasks: Vec<TaskPlan>,
+    /// The ranks of stacks of tasks of different priorities.
+    pub stacks: Vec<StackRank>,
     /// Which arms shared joints, and were resolved as one system.
     pub shared: Vec<SharedJoints>,
     /// How near bodies came to each other, where something [stands around](crate::planner::Surroundings) the arms.

@@ -2,7 +2,8 @@ use super::approach::{count_from, put_lead_before, put_wait_before};
 use super::closest_approach::ClosestApproach;
 use super::convergence::Convergence;
 use super::distance_watch::DistanceWatch;
-use super::plan::{ArmPlan, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
+use super::lost_directions::lost_directions;
+use super::plan::{ArmPlan, Plan, PlanStatus, SharedJoints, StackRank, Stop, TaskPlan};
 use crate::planner::system::{ArmRuntime, ArmState, Coupling, Monitor, System};
 use nalgebra::Vector6;
 
@@ -87,6 +88,7 @@ impl Record {
         for (plan, runtime) in self.arms.iter_mut().zip(arms) {
             take_figures(plan, &runtime.monitor);
             plan.worst_singular_value = worst_singular_value(plan, runtime, sigma);
+            plan.lost_directions = lost_directions(plan, runtime, sigma);
             if let Some(tolerance) = runtime.arm.convergence {
                 warnings.extend(converge(plan, tolerance, factor, sigma));
             }
@@ -97,6 +99,7 @@ impl Record {
             }
             let limits = chain.joints().iter().map(|joint| &joint.limits);
             plan.violations.extend(plan.crossed_by_differences(limits, sigma));
+            warnings.extend(return_warning(plan, runtime));
             warnings.extend(damping_warning(plan, runtime.threshold));
             warnings.extend(rate_warning(&plan.name, runtime.monitor.largest_rate, largest_criterion_rate));
         }
@@ -114,14 +117,43 @@ impl Record {
             Some(stop) => (stop.status, Some(stop.reason)),
             None => (PlanStatus::Completed, None),
         };
-        let shared = systems.filter(|system| system.arms().count() > 1);
+        let systems: Vec<&System> = systems.collect();
+        let begins = lead as f64 * sigma;
+        let stacks = systems.iter().filter_map(|system| stack_rank(system, arms, begins)).collect();
+        let shared = systems.iter().filter(|system| system.arms().count() > 1);
         let shared =
             shared.map(|system| SharedJoints { arms: system.arm_names(), joints: system.joints_in_common() });
         let (arms, tasks) = (self.arms, self.tasks);
         let shared = shared.filter(|shared| !shared.joints.is_empty()).collect();
         let noise = None;
-        Plan { status, reason, formula, sigma, h, start, steps, lead, noise, arms, tasks, shared, distance, warnings }
+        Plan {
+            status,
+            reason,
+            formula,
+            sigma,
+            h,
+            start,
+            steps,
+            lead,
+            noise,
+            arms,
+            tasks,
+            stacks,
+            shared,
+            distance,
+            warnings,
+        }
     }
+}
+
+/// How much of its tasks a system could meet, if these have different priorities.
+fn stack_rank(system: &System, arms: &[ArmRuntime], begins: f64) -> Option<StackRank> {
+    let shape = system.shape();
+    let first = shape.tasks.first()?;
+    shape.tasks.iter().find(|task| task.priority != first.priority)?;
+    let (missing, at) = arms[system.arms().next()?].monitor.most_missing_rows;
+    let (rows, t) = (shape.rows(), at + begins);
+    Some(StackRank { arms: system.arm_names(), rows, rank: rows - missing.min(rows), t })
 }
 
 /// Tells apart how the arm was brought onto its path. A sentence where it was not.
@@ -191,6 +223,23 @@ fn steady_mean_square(errors: &[Vector6<f64>]) -> f64 {
     half.iter().map(Vector6::norm_squared).sum::<f64>() / half.len() as f64
 }
 
+/// What became of joints that started outside their position limits.
+fn return_warning(plan: &ArmPlan, runtime: &ArmRuntime) -> Option<String> {
+    let outside: Vec<&str> =
+        runtime.monitor.stayed_outside().map(|joint| plan.joints[joint].as_str()).collect();
+    if !outside.is_empty() {
+        let (arm, joints) = (&plan.name, outside.join("`, `"));
+        return Some(format!(
+            "arm `{arm}` started with `{joints}` outside the position limits and never came back"
+        ));
+    }
+    let returned = runtime.monitor.returned?;
+    Some(format!(
+        "arm `{}` started outside its position limits and was within them from t = {returned:.6} s on",
+        plan.name
+    ))
+}
+
 fn damping_warning(plan: &ArmPlan, threshold: f64) -> Option<String> {
     let (smallest, at) = plan.smallest_singular_value;
     (plan.damped_samples > 1).then(|| {
@@ -237,6 +286,7 @@ fn empty_plan(runtime: &ArmRuntime, steps: usize) -> ArmPlan {
         max_orientation_error: 0.0,
         smallest_singular_value: (f64::INFINITY, 0.0),
         damped_samples: 0,
+        lost_directions: Vec::new(),
         violations: Vec::new(),
         worst_singular_value: None,
         convergence: None,

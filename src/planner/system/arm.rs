@@ -148,10 +148,21 @@ impl Arm {
 
     /// The smallest singular value of its task Jacobian at time `t` \[s\] of the path with the joints at `q` [rad or m].
     pub(in crate::planner) fn smallest_singular_value(&self, t: f64, q: &[f64]) -> f64 {
+        self.weakest_direction(t, q).0
+    }
+
+    /// The same with its left singular vector (linear; angular), by what the rows of the task measure.
+    pub(in crate::planner) fn weakest_direction(&self, t: f64, q: &[f64]) -> (f64, Vector6<f64>) {
         let jacobian = self.task_rows(t, q, &mut self.chain.scratch()).jacobian;
         let mut rotations = RowRotations::with_capacity(jacobian.nrows(), jacobian.ncols());
         rotations.compute(jacobian.ncols(), |row, column| jacobian[(row, column)]);
-        rotations.smallest()
+        let (smallest, mut direction) = (rotations.smallest(), Vector6::zeros());
+        if let Some((_, left, _)) = rotations.directions().find(|(value, ..)| *value == smallest) {
+            for (row, entry) in left.iter().enumerate() {
+                direction[self.task.component(row).place()] += entry;
+            }
+        }
+        (smallest, direction)
     }
 
     /// The index of the first of samples at `times` \[s\] with these [task errors](Self::task_error) that counts as on the path:

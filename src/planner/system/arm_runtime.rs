@@ -57,7 +57,7 @@ impl ArmRuntime {
             bounds: Bounds { length: arm.length(), has_too_few_joints: joints < arm.task.rows() },
             threshold: 0.0,
             was_singular: true,
-            monitor: Monitor::new(&arm.chain, sigma),
+            monitor: Monitor::new(&arm.chain, &arm.q0, sigma),
             arm,
         }
     }

@@ -51,6 +51,10 @@ fn larger(a: f64, b: f64) -> f64 {
 pub(in crate::planner) struct Monitor {
     position: Vec<Worst>,
     velocity: Vec<Worst>,
+    /// Which joints started outside their position limits and have not been within since.
+    returning: Vec<bool>,
+    /// When the last of them came back \[s\].
+    pub(in crate::planner) returned: Option<f64>,
     /// The positions one sample ago.
     pub(in crate::planner) previous: Vec<f64>,
     limits: Vec<JointLimits<[f64; 1]>>,
@@ -61,6 +65,8 @@ pub(in crate::planner) struct Monitor {
     pub(in crate::planner) damped_samples: usize,
     pub(in crate::planner) smallest_singular_value: f64,
     pub(in crate::planner) smallest_at: f64,
+    /// How many rows of a stack of tasks could not be met at most, and when.
+    pub(in crate::planner) most_missing_rows: (usize, f64),
     /// The largest rate [1/s] of null-space criteria, and when.
     pub(in crate::planner) largest_rate: (f64, f64),
 }
@@ -90,8 +96,11 @@ impl Kernel for Excess<'_> {
 }
 
 impl Monitor {
-    pub(in crate::planner) fn new(chain: &Chain, sigma: f64) -> Self {
+    /// The monitor of a chain whose joints start at `q0` [rad or m].
+    pub(in crate::planner) fn new(chain: &Chain, q0: &[f64], sigma: f64) -> Self {
         Self {
+            returning: chain.joints().iter().zip(q0).map(|(joint, q)| !joint.limits.contains(*q)).collect(),
+            returned: None,
             position: vec![Worst::NONE; chain.dof()],
             velocity: vec![Worst::NONE; chain.dof()],
             previous: vec![f64::NAN; chain.dof()],
@@ -103,6 +112,7 @@ impl Monitor {
             damped_samples: 0,
             smallest_singular_value: f64::INFINITY,
             smallest_at: 0.0,
+            most_missing_rows: (0, 0.0),
             largest_rate: (0.0, 0.0),
         }
     }
@@ -158,7 +168,11 @@ impl Monitor {
 
     pub(in crate::planner) fn observe_joints(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
         let (limits, previous) = (&self.limits, &self.previous);
-        if with_instructions(level(), Excess { limits, positions: q, previous, velocities: velocity }) > 0.0 {
+        if self.returning.contains(&true) {
+            self.look_closely(t, q, velocity);
+        } else if with_instructions(level(), Excess { limits, positions: q, previous, velocities: velocity })
+            > 0.0
+        {
             self.look_closely(t, q, velocity);
         }
         self.previous.copy_from_slice(q);
@@ -170,6 +184,10 @@ impl Monitor {
         for (i, limit) in self.limits.iter().enumerate() {
             let ([lower], [upper], [fastest]) = (limit.lower, limit.upper, limit.velocity);
             self.position[i].observe(t, q[i], lower, upper);
+            if self.returning[i] && lower <= q[i] && q[i] <= upper {
+                // What was asked for has been done: the limits hold from here on.
+                (self.returning[i], self.returned, self.position[i]) = (false, Some(t), Worst::NONE);
+            }
             self.velocity[i].observe(t, velocity[i], -fastest, fastest);
             // NaN before the first step compares as no violation.
             let mean = (q[i] - self.previous[i]) / self.sigma;
@@ -183,10 +201,18 @@ impl Monitor {
             self.smallest_singular_value = resolution.smallest_singular_value;
             self.smallest_at = t;
         }
+        if resolution.missing_rows > self.most_missing_rows.0 {
+            self.most_missing_rows = (resolution.missing_rows, t);
+        }
         // A rate that is not a number is none that could be followed.
         if !(resolution.criterion_rate <= self.largest_rate.0) {
             self.largest_rate = (resolution.criterion_rate, t);
         }
+    }
+
+    /// The joints that started outside their position limits and never came back.
+    pub(in crate::planner) fn stayed_outside(&self) -> impl Iterator<Item = usize> {
+        (0..self.returning.len()).filter(|&joint| self.returning[joint])
     }
 
     pub(in crate::planner) fn violations(&self, chain: &Chain) -> Vec<Violation> {

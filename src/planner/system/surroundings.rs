@@ -141,8 +141,15 @@ impl Surroundings {
     pub(in crate::planner) fn missing(&self) -> impl Iterator<Item = String> {
         self.machines.iter().flat_map(|machine| {
             machine.model.missing().iter().map(|missing| {
-                let link = if missing.link.is_empty() { String::new() } else { format!("link `{}`: ", missing.link) };
-                format!("not all of `{}` is kept apart from what is around it: {link}{}", machine.name, missing.reason)
+                let link = if missing.link.is_empty() {
+                    String::new()
+                } else {
+                    format!("link `{}`: ", missing.link)
+                };
+                format!(
+                    "not all of `{}` is kept apart from what is around it: {link}{}",
+                    machine.name, missing.reason
+                )
             })
         })
     }
@@ -183,11 +190,12 @@ impl Surroundings {
             let MachineBodies { name, robot, model, base, world_from_base, .. } = machine;
             let own = arms.iter().filter(|(arm, _)| machine.arms.contains(&arm.name));
             let places = own.fold(JointPlaces::new(), |all, (arm, places)| all.with_arm(&arm.chain, places));
-            builder = builder
-                .with_machine(name, robot, model, base, world_from_base, &places)
-                .map_err(|error| PlannerError::Surroundings { problem: format!("machine `{name}`: {error}") })?;
+            builder = builder.with_machine(name, robot, model, base, world_from_base, &places).map_err(
+                |error| PlannerError::Surroundings { problem: format!("machine `{name}`: {error}") },
+            )?;
         }
-        let builder = self.obstacles.iter().fold(builder, |all, (name, shape)| all.with_obstacle(name, *shape));
+        let builder =
+            self.obstacles.iter().fold(builder, |all, (name, shape)| all.with_obstacle(name, *shape));
         let builder = self.allowed.iter().fold(builder, |all, [one, other]| all.allowing(one, other));
         Ok(builder.build())
     }

@@ -177,7 +177,12 @@ impl Scenario {
         let chain = chain(&at, spec, &self.law, folder)?.mounted(&spec.mount.pose());
         let given: Vec<f64> = spec.q0.iter().map(Real::value).collect();
         if !given.is_empty() || spec.start_pose.is_none() {
-            chain.check_within_limits(&given).map_err(|problem| refused_positions(&at, &problem))?;
+            let checked = if self.law.law(kinds, &[])?.keeps_limits() {
+                chain.check_positions(&given)
+            } else {
+                chain.check_within_limits(&given)
+            };
+            checked.map_err(|problem| refused_positions(&at, &problem))?;
         }
         let held = positions_in_common(&chain, machine);
         let solve =
@@ -276,9 +281,7 @@ impl Scenario {
                 )
             }
             PlannerError::Surroundings { .. } => (ErrorKind::Scenario, KeyPath::dotted("collision")),
-            PlannerError::TooNear { .. } => {
-                (ErrorKind::Scenario, KeyPath::dotted("collision").key("margin"))
-            }
+            PlannerError::TooNear { .. } => (ErrorKind::Scenario, KeyPath::dotted("collision").key("margin")),
             PlannerError::Integrate(_) => (ErrorKind::Formula, KeyPath::dotted("formula")),
             _ => (ErrorKind::Scenario, KeyPath::default()),
         };
@@ -314,7 +317,11 @@ fn common_start(arms: &[&Arm]) -> Vec<f64> {
 fn refused_positions(at: &KeyPath, problem: &PositionsError) -> ScenarioError {
     let at = at.key("q0");
     let at = problem.index().map_or(at.clone(), |index| at.index(index));
-    ScenarioError::at(ErrorKind::Scenario, &at, problem)
+    let remedy = match problem {
+        PositionsError::OutsideLimits(_) => "; laws that keep limits, such as \"qp\", bring a joint back",
+        _ => "",
+    };
+    ScenarioError::at(ErrorKind::Scenario, &at, format!("{problem}{remedy}"))
 }
 
 /// Says why two arms with a joint in common can not be planned as they stand.

@@ -98,7 +98,9 @@ impl CollisionSpec {
         if let Some(influence) = &self.influence {
             believable(&at.key("influence"), influence)?;
             require(influence.value() > margin.value(), &at.key("influence"), || {
-                format!("{influence} m is not beyond the margin of {margin} m; pairs have to count before they touch it")
+                format!(
+                    "{influence} m is not beyond the margin of {margin} m; pairs have to count before they touch it"
+                )
             })?;
         }
         if let Some(speed) = &self.closing_speed {
@@ -227,14 +229,17 @@ fn own_bodies(at: &KeyPath, source: &RobotSource, robot: &Robot) -> Result<Colli
     let refuse = |problem: String| ScenarioError::at(ErrorKind::Robot, at, problem);
     let model = match (source, source.urdf()) {
         (RobotSource::Embedded(name), _) => match embedded::collision_text(name) {
-            Some(text) => CollisionModel::from_toml(robot, text).map_err(|error| refuse(error.to_string()))?,
+            Some(text) => {
+                CollisionModel::from_toml(robot, text).map_err(|error| refuse(error.to_string()))?
+            }
             None => return Err(refuse(CollisionError::NoCapsules { name: name.clone() }.to_string())),
         },
         (_, Some(text)) => CollisionModel::from_urdf(robot, &text, source.folder().as_deref()),
         (_, None) => CollisionModel::new(robot),
     };
     if model.capsules().is_empty() {
-        let reason = model.missing().first().map_or_else(String::new, |missing| format!(" ({})", missing.reason));
+        let reason =
+            model.missing().first().map_or_else(String::new, |missing| format!(" ({})", missing.reason));
         let label = source.label();
         return Err(refuse(format!(
             "robot {label} has no bodies: it has no <collision> shapes that can be used{reason}; give them in a file that `collision.model` names"
