@@ -167,7 +167,7 @@ fn what_makes_no_sense_is_refused() {
         "{inside}"
     );
     let stranger = refused(around(&[("arm", 0.0), ("other", 3.0)])).to_string();
-    assert!(stranger.contains("no arm called `other`"), "{stranger}");
+    assert!(stranger.contains("there is no arm `other`"), "{stranger}");
     let numbers = refused(around(&[("arm", 0.0)]).with_influence(0.01)).to_string();
     assert!(numbers.contains("pairs count from 0.01 m on, and the margin is 0.02 m"), "{numbers}");
     assert!(refused(Surroundings::new(f64::NAN)).to_string().contains("the margin is NaN m"));

@@ -50,7 +50,7 @@ impl PlanFormat for PlanText {
         }
         plan.arms.iter().try_for_each(|arm| start(arm, out))?;
         approach_of(plan).iter().try_for_each(|sentence| writeln!(out, "\n{sentence}"))?;
-        plan.distance.iter().try_for_each(|closest| writeln!(out, "\n{}", came_near(closest)))?;
+        plan.distance.iter().try_for_each(|closest| writeln!(out, "\n{}, at t = {} s", came_near(closest), short(closest.t)))?;
         writeln!(out, "\ntask error over time, logarithmic:")?;
         let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
         for arm in &plan.arms {
@@ -71,13 +71,10 @@ pub(super) fn kept_together(task: &TaskPlan) -> String {
 
 /// Says how near bodies came to each other.
 pub(super) fn came_near(closest: &ClosestApproach) -> String {
-    let ClosestApproach { minimum, pair: [one, other], t, margin, .. } = closest;
+    let ClosestApproach { minimum, pair: [one, other], margin, .. } = closest;
     let verdict = if closest.is_kept() { "kept" } else { "not kept" };
-    format!(
-        "least distance {minimum:.4} m at t = {} s, between {one} and {other} (margin {} m, {verdict})",
-        short(*t),
-        short(*margin)
-    )
+    let margin = short(*margin);
+    format!("least distance {minimum:.4} m, between {one} and {other} (margin {margin} m, {verdict})")
 }
 
 /// Says how much of a stack of tasks could be met.
