@@ -11,6 +11,8 @@ pub struct Instant<'a> {
     pub t: f64,
     /// The sampling gap of the run \[s\].
     pub sigma: f64,
+    /// Whether it is a sample of the run, one `sigma` after the one before, rather than a stage between samples.
+    pub is_sample: bool,
     /// Joint positions [rad or m], `n` of them.
     pub q: &'a [f64],
     /// The joint velocities [rad/s or m/s] that were resolved at the sample before, both parts together; zero before the

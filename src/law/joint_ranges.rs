@@ -154,7 +154,9 @@ impl JointRanges {
             let (known, first) = instant.next.as_ref().map_or((q, sigma), |next| {
                 (next.known[joint] + (next.second - next.first) * feedback, next.first)
             });
-            let before = self.has_before.then(|| (self.velocity_before[joint], self.before[joint]));
+            // Between samples there is no gap to what was before.
+            let before = (self.has_before && instant.is_sample)
+                .then(|| (self.velocity_before[joint], self.before[joint]));
             let upwards = Upwards { limits: *limits, q, before, feedback, known, first, sigma };
             let (upper, lower) = (upwards.side(), upwards.mirrored().side());
             (self.lower[joint], self.upper[joint]) = (-lower.value, upper.value);

@@ -24,6 +24,7 @@ pub(super) fn resolve(law: &mut impl Law, q: &[f64], tasks: &[TaskRows]) -> ([Ve
     let instant = Instant {
         t: 0.0,
         sigma: 0.01,
+        is_sample: true,
         q,
         previous_velocity: &rest,
         limits: &[],

@@ -32,6 +32,7 @@ fn resolve(
     let instant = Instant {
         t: 0.0,
         sigma: 0.01,
+        is_sample: true,
         q: &case.q,
         previous_velocity: &rest,
         limits: &[],

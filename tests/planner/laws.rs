@@ -102,6 +102,7 @@ fn resolve(law: &mut dyn Law, q: &[f64], limits: &[Limits], tasks: &[TaskRows]) 
     let instant = Instant {
         t: 0.0,
         sigma: 0.01,
+        is_sample: true,
         q,
         previous_velocity: &rest,
         limits,

@@ -244,6 +244,7 @@ mod tests {
         let instant = Instant {
             t: 0.0,
             sigma: 0.01,
+            is_sample: true,
             q,
             previous_velocity: &rest,
             limits: &limits,

@@ -38,6 +38,7 @@ mod tests {
         let instant = Instant {
             t: 0.5,
             sigma: 0.01,
+            is_sample: true,
             q,
             previous_velocity: &previous,
             limits: &limits,

@@ -271,6 +271,7 @@ impl System {
         let instant = Instant {
             t: moment.t,
             sigma: step,
+            is_sample: moment.sample.is_some(),
             q: &self.q,
             previous_velocity,
             limits: &self.limits,
