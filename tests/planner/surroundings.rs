@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
-use kinstep::collision::{Capsule, CollisionModel, HalfSpace};
+use kinstep::collision::{Capsule, CollisionModel, HalfSpace, Pairings};
 use kinstep::formula::FormulaTable;
 use kinstep::law::{Clearance, Law, Pseudoinverse, QuadraticProgram};
 use kinstep::nalgebra::{IsometryMatrix3, Vector3};
@@ -100,7 +100,7 @@ fn a_program_in_least_squares_leaves_its_path_rather_than_meet_something() {
     assert!(reason.contains("the margin between `arm panda_hand` and `wall`"), "{reason}");
     let yielding = run(QuadraticProgram::new().in_least_squares(1e-6));
     let closest = yielding.distance.as_ref().unwrap();
-    assert!(closest.minimum >= MARGIN && closest.pair[1] == "wall", "{closest:?}");
+    assert!(closest.minimum >= MARGIN && closest.pair[1] == "wall", "{} {:?}", closest.minimum, closest.pair);
     assert!(yielding.arms[0].max_error > 0.05, "{}", yielding.arms[0].max_error);
 }
 
@@ -111,7 +111,9 @@ fn two_arms_see_each_other() {
             [arm("left", 0.35, -sideways() * 0.4, law()), arm("right", -0.35, sideways() * 0.4, law())];
         let system = kinstep::planner::JointSystem::of(["left", "right"]).with_law(law());
         let plan = builder("split-ab3", 0.01).arms(arms).system(system);
-        plan.surroundings(around(&[("left", 0.35), ("right", -0.35)])).build().unwrap().run()
+        let between = Pairings { within_machines: false, ..Pairings::default() };
+        let around = around(&[("left", 0.35), ("right", -0.35)]).with_pairings(between);
+        plan.surroundings(around).build().unwrap().run()
     };
     let blind = both(|| Box::new(Pseudoinverse::new()));
     let seeing = both(|| Box::new(QuadraticProgram::new().with_criterion(Clearance::new(1.0))));
