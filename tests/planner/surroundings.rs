@@ -108,7 +108,7 @@ fn a_program_in_least_squares_leaves_its_path_rather_than_meet_something() {
 fn two_arms_see_each_other() {
     let both = |law: fn() -> Box<dyn Law>| {
         let arms =
-            [arm("left", 0.35, -sideways() * 0.4, law()), arm("right", -0.35, sideways() * 0.4, law())];
+            [arm("left", 0.35, -sideways() * 0.8, law()), arm("right", -0.35, sideways() * 0.8, law())];
         let system = kinstep::planner::JointSystem::of(["left", "right"]).with_law(law());
         let plan = builder("split-ab3", 0.01).arms(arms).system(system);
         let between = Pairings { within_machines: false, ..Pairings::default() };
@@ -116,15 +116,11 @@ fn two_arms_see_each_other() {
         plan.surroundings(around).build().unwrap().run()
     };
     let blind = both(|| Box::new(Pseudoinverse::new()));
-    let seeing = both(|| Box::new(QuadraticProgram::new().with_criterion(Clearance::new(1.0))));
+    let seeing =
+        both(|| Box::new(QuadraticProgram::new().in_least_squares(1e-6).with_criterion(Clearance::new(1.0))));
     let [blind, seeing] = [blind, seeing].map(|plan| plan.distance.unwrap());
     assert!(blind.pair[0].starts_with("left") && blind.pair[1].starts_with("right"), "{:?}", blind.pair);
-    assert!(
-        seeing.minimum >= MARGIN && seeing.minimum > blind.minimum,
-        "{} {}",
-        seeing.minimum,
-        blind.minimum
-    );
+    assert!(seeing.minimum >= MARGIN && blind.minimum < 0.0, "{} {}", seeing.minimum, blind.minimum);
 }
 
 #[test]
@@ -177,7 +173,7 @@ fn what_makes_no_sense_is_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(100))]
 
     /// Wherever the ball is: the run keeps the margin at every sample, or stops.
     #[test]
@@ -194,7 +190,7 @@ proptest! {
             Ok(planner) => {
                 let plan = planner.run();
                 let closest = plan.distance.as_ref().unwrap();
-                prop_assert!(closest.minimum >= MARGIN - 1e-4, "{:?} {:?}", closest.minimum, closest.pair);
+                prop_assert!(closest.minimum >= MARGIN - 1e-9, "{:?} {:?}", closest.minimum, closest.pair);
             }
         }
     }

@@ -50,7 +50,9 @@ impl PlanFormat for PlanText {
         }
         plan.arms.iter().try_for_each(|arm| start(arm, out))?;
         approach_of(plan).iter().try_for_each(|sentence| writeln!(out, "\n{sentence}"))?;
-        plan.distance.iter().try_for_each(|closest| writeln!(out, "\n{}, at t = {} s", came_near(closest), short(closest.t)))?;
+        plan.distance.iter().try_for_each(|closest| {
+            writeln!(out, "\n{}, at t = {} s", came_near(closest), short(closest.t))
+        })?;
         writeln!(out, "\ntask error over time, logarithmic:")?;
         let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
         for arm in &plan.arms {

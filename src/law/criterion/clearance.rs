@@ -30,7 +30,10 @@ impl Clearance {
 /// The nearest points of every pair, without the ends behind them.
 fn nearest<'a>(avoidance: &Avoidance<'a>) -> impl Iterator<Item = (&'a Proximity, &'a [f64])> {
     let mut last = None;
-    avoidance.contacts.iter().filter(move |(proximity, _)| last.replace(proximity.pair) != Some(proximity.pair))
+    avoidance
+        .contacts
+        .iter()
+        .filter(move |(proximity, _)| last.replace(proximity.pair) != Some(proximity.pair))
 }
 
 impl Criterion for Clearance {

@@ -9,7 +9,9 @@ use crate::short;
 
 /// Returns how near bodies were to each other, where that was looked at, beside the margin.
 pub(super) fn figures(of: &PlanFigures<'_>) -> Vec<Figure> {
-    let Some(closest) = of.distance.filter(|closest| closest.course.len() >= of.to) else { return Vec::new() };
+    let Some(closest) = of.distance.filter(|closest| closest.course.len() >= of.to) else {
+        return Vec::new();
+    };
     let course = line("least distance", of.series(|n| closest.course[n]), 0);
     let (first, last) = of.span();
     let margin = Mark::Guide { points: vec![(first, closest.margin), (last, closest.margin)] };
