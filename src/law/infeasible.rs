@@ -42,7 +42,7 @@ pub enum Conflict {
     },
     /// The distance that two bodies are kept apart.
     Distance {
-        /// The number of the pair, as in [`Avoidance::pairs`](super::Avoidance::pairs).
+        /// The number of the pair, as in [`Avoidance::contacts`](super::Avoidance::contacts).
         pair: usize,
     },
 }

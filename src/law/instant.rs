@@ -34,8 +34,9 @@ pub struct Instant<'a> {
 /// Pairs of bodies that are near, and how they are to be kept apart.
 #[derive(Clone, Copy, Debug)]
 pub struct Avoidance<'a> {
-    /// The pairs nearer than `influence`, each with its distance \[m\] and the derivatives of that by the joints.
-    pub pairs: &'a Proximities,
+    /// The pairs nearer than `influence`, each with its distance \[m\] and the derivatives of that by the joints; behind each the
+    /// ends of its capsules as far as these are near too.
+    pub contacts: &'a Proximities,
     /// How near they may come \[m\].
     pub margin: f64,
     /// From where on they count \[m\]: more than the margin.

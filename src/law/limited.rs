@@ -7,6 +7,9 @@ use super::{
 };
 use crate::math::{Constraint, LeastDistance, NoSolution};
 
+/// How often the rows that keep bodies apart are made anew for the step that came of them.
+const ROUNDS: usize = 4;
+
 /// A way to find the joint velocity nearest to what the criteria ask for that meets the tasks within the ranges of the joints.
 ///
 /// It is asked only where the velocity that is best without ranges leaves them.
@@ -120,19 +123,24 @@ impl<M: RangeMethod> Law for Limited<M> {
         let resolution = self.free.resolve(instant, velocity)?;
         let (f, g) = (&mut *velocity.feedforward, &*velocity.feedback);
         workspace.ranges.find(instant, g)?;
-        if self.method.takes_rows() {
-            workspace.distances.find(instant, g);
-        }
         for (x, (f, g)) in workspace.x.iter_mut().zip(f.iter().zip(g)) {
             *x = f + g;
         }
+        if self.method.takes_rows() {
+            workspace.distances.find(instant, g, &workspace.x);
+        }
         if !(workspace.ranges.contains(&workspace.x) && workspace.distances.contain(&workspace.x)) {
             workspace.prepare_problem(instant);
-            let mut x = std::mem::take(&mut workspace.x);
-            let solved = self.method.solve(&workspace.problem(self.free.criteria_sum()), &mut x);
-            workspace.x = x;
-            solved.map_err(|failure| workspace.infeasible(failure, self.method.conflict()))?;
-            workspace.ranges.clamp(&mut workspace.x);
+            for _ in 0..ROUNDS {
+                let mut x = std::mem::take(&mut workspace.x);
+                let solved = self.method.solve(&workspace.problem(self.free.criteria_sum()), &mut x);
+                workspace.x = x;
+                solved.map_err(|failure| workspace.infeasible(failure, self.method.conflict()))?;
+                workspace.ranges.clamp(&mut workspace.x);
+                if !workspace.distances.tighten(&workspace.x) || workspace.distances.contain(&workspace.x) {
+                    break;
+                }
+            }
             for (f, (x, g)) in f.iter_mut().zip(workspace.x.iter().zip(g)) {
                 *f = x - g;
             }

@@ -53,7 +53,7 @@ impl Slacks {
             equalities: vec![0.0; rows * unknowns],
             lower: vec![f64::NEG_INFINITY; unknowns],
             upper: vec![f64::INFINITY; unknowns],
-            inequalities: Vec::with_capacity(shape.pairs * unknowns),
+            inequalities: Vec::with_capacity(shape.contacts * unknowns),
             x: vec![0.0; unknowns],
         }
     }

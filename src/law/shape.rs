@@ -11,8 +11,8 @@ pub struct SystemShape {
     pub axes: Vec<usize>,
     /// The sampling gap of the run \[s\].
     pub sigma: f64,
-    /// How many pairs of bodies may have to be kept apart.
-    pub pairs: usize,
+    /// How many entries [`Avoidance::contacts`](super::Avoidance::contacts) may have.
+    pub contacts: usize,
 }
 
 /// What stays the same of a task in a system.
@@ -51,7 +51,7 @@ impl SystemShape {
             tasks: vec![task],
             axes: vec![joints],
             sigma: 0.0,
-            pairs: 0,
+            contacts: 0,
         }
     }
 

@@ -24,8 +24,8 @@ pub enum PlannerError {
     },
     /// Two bodies start nearer to each other than they may come.
     #[error(
-        "`{one}` and `{other}` start {} m apart, and the margin is {} m; start elsewhere, lower the margin, or allow the pair if the two may touch",
-        number_text(round(*.distance)), number_text(*.margin)
+        "`{one}` and `{other}` {}, and the margin is {} m; start elsewhere, lower the margin, or allow the pair if the two may touch",
+        start_apart(*.distance), number_text(*.margin)
     )]
     TooNear {
         /// The machine and the link.
@@ -226,7 +226,12 @@ pub enum PlannerError {
     Integrate(#[from] IntegrateError),
 }
 
-/// A distance to a tenth of a micrometre, as one says it.
-fn round(distance: f64) -> f64 {
-    (distance * 1e7).round() / 1e7
+/// How far two bodies are apart at the start, to a micrometre.
+fn start_apart(distance: f64) -> String {
+    let length = number_text((distance.abs() * 1e6).round() / 1e6);
+    if distance < 0.0 {
+        format!("overlap by {length} m at the start")
+    } else {
+        format!("start {length} m apart")
+    }
 }

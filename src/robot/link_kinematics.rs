@@ -301,4 +301,16 @@ impl PosedLinks<'_> {
             row[drive.column] += factor * drive.multiplier * speed;
         }
     }
+
+    /// Returns the longest lever by which a joint moves a point of a link, given in the world: the distance from the axis \[m\] of
+    /// one that turns, 1 of one that slides; times the factor by which it follows another. With it the point departs from the motion
+    /// that its velocities promise by at most `1/2 lever (sum |dq|)^2`.
+    pub fn lever(&self, link: usize, point: &Vector3<f64>) -> f64 {
+        let levers = self.kinematics.drives(link).map(|(index, drive)| {
+            let [origin, axis] = &self.scratch.axes[index];
+            let lever = if drive.turns { axis.cross(&(point - origin)).norm() } else { 1.0 };
+            lever * drive.multiplier.abs().max(drive.multiplier * drive.multiplier)
+        });
+        levers.fold(0.0, f64::max)
+    }
 }

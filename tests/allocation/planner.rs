@@ -1,18 +1,19 @@
 //! A control loop allocates nothing once it is set up.
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
+use kinstep::collision::{Capsule, CollisionModel};
 use kinstep::formula::FormulaTable;
 use kinstep::integrate::{
     Attempt, Decision, Method, Mode, Multistep, Ode, RatioCoefficients, RatioRow, Starter, StepController,
 };
 use kinstep::kind::{Parameters, Value};
-use kinstep::law::{CRITERIA, LAWS};
+use kinstep::law::{CRITERIA, Clearance, LAWS, QuadraticProgram};
 use kinstep::nalgebra::{IsometryMatrix3, Rotation3, Vector3};
-use kinstep::planner::{Arm, Batch, Noise, Planner, PlannerBuilder};
+use kinstep::planner::{Arm, Batch, Noise, Planner, PlannerBuilder, Surroundings};
 use kinstep::robot::{Limits, embedded};
 use kinstep::scheme;
 use kinstep::task::{
-    Circle, Ends, Motion, Path, Planar, Plane, Polyline, SCurve, Sin2, Spline, TaskKind, Waypoints,
+    Circle, Ends, Line, Motion, Path, Planar, Plane, Polyline, SCurve, Sin2, Spline, TaskKind, Waypoints,
 };
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -215,5 +216,26 @@ fn steps_that_solve_correct_or_vary_allocate_nothing() {
             }
         });
         assert_eq!(spent.count_total, 0);
+    }
+}
+
+#[test]
+fn a_thousand_steps_past_a_ball_allocate_nothing() {
+    let panda = embedded::get("panda").unwrap();
+    let chain = panda.chain("panda_link0", "panda_hand_tcp").unwrap();
+    let q0 = vec![0.0, -0.6, 0.0, -2.2, 0.0, 1.6, 0.8];
+    let pose = chain.forward(&q0, &mut chain.scratch()).pose();
+    let motion = Motion::from_pose(Line { displacement: Vector3::new(0.0, 0.4, 0.0) }, Sin2, 2.0, &pose);
+    for law in [QuadraticProgram::new(), QuadraticProgram::new().in_least_squares(1e-8)] {
+        let law = law.with_criterion(Clearance::new(1.0));
+        let arm =
+            Arm::new("arm", chain.clone(), q0.clone(), TaskKind::Position, motion.clone()).with_law(law);
+        let ball = Capsule::sphere(Vector3::new(0.25, 0.25, 0.6), 0.08).unwrap();
+        let model = CollisionModel::embedded("panda").unwrap();
+        let around = Surroundings::new(0.02)
+            .with_machine("arm", panda.clone(), model, "panda_link0", IsometryMatrix3::identity(), ["arm"])
+            .with_obstacle("ball", ball);
+        let planner = scheme::dtsmp([arm], 0.001, 0.4).duration(2.0).surroundings(around).build().unwrap();
+        steps_without_allocating(planner);
     }
 }

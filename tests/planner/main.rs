@@ -10,4 +10,5 @@ mod paper;
 mod shared;
 mod side_by_side;
 mod stops;
+mod surroundings;
 mod waypoints;

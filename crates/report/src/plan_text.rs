@@ -52,7 +52,9 @@ impl PlanFormat for PlanText {
         }
         plan.arms.iter().try_for_each(|arm| start(arm, out))?;
         approach_of(plan).iter().try_for_each(|sentence| writeln!(out, "\n{sentence}"))?;
-        plan.distance.iter().try_for_each(|closest| writeln!(out, "\n{}", came_near(closest)))?;
+        plan.distance.iter().try_for_each(|closest| {
+            writeln!(out, "\n{}, at t = {} s", came_near(closest), short(closest.t))
+        })?;
         writeln!(out, "\ntask error over time, logarithmic:")?;
         let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
         for arm in &plan.arms {
@@ -70,6 +72,14 @@ impl PlanFormat for PlanText {
 /// Says how well a task over the tips of several arms was kept.
 pub(super) fn kept_together(task: &TaskPlan) -> String {
     format!("task {} of {}: max error {:.2e}", task.name, task.arms.join(" and "), task.max_error())
+}
+
+/// Says how near bodies came to each other.
+pub(super) fn came_near(closest: &ClosestApproach) -> String {
+    let ClosestApproach { minimum, pair: [one, other], margin, .. } = closest;
+    let verdict = if closest.is_kept() { "kept" } else { "not kept" };
+    let margin = short(*margin);
+    format!("least distance {minimum:.4} m, between {one} and {other} (margin {margin} m, {verdict})")
 }
 
 /// Says how much of a stack of tasks could be met.
@@ -92,17 +102,6 @@ pub(super) fn lost_by(arm: &ArmPlan, lost: &LostDirection) -> String {
         number_text(lost.to),
         entries.join(", "),
         lost.smallest_singular_value
-    )
-}
-
-/// Says how near bodies came to each other.
-pub(super) fn came_near(closest: &ClosestApproach) -> String {
-    let ClosestApproach { minimum, pair: [one, other], t, margin, .. } = closest;
-    let verdict = if closest.is_kept() { "kept" } else { "not kept" };
-    format!(
-        "least distance {minimum:.4} m at t = {} s, between {one} and {other} (margin {} m, {verdict})",
-        short(*t),
-        short(*margin)
     )
 }
 

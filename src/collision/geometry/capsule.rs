@@ -105,6 +105,12 @@ impl Capsule {
         (self.middle(), (self.to - self.from).norm() / 2.0 + self.radius)
     }
 
+    /// Returns the spheres at both ends; the one that it is, where it is a sphere.
+    pub(in crate::collision) fn ends(&self) -> impl Iterator<Item = Capsule> + use<> {
+        let ends = [self.from, self.to].map(|end| Capsule { from: end, to: end, radius: self.radius });
+        ends.into_iter().take(if self.is_sphere() { 1 } else { 2 })
+    }
+
     pub(super) fn middle(&self) -> Vector3<f64> {
         (self.from + self.to) / 2.0
     }

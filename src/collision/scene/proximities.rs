@@ -2,6 +2,9 @@
 
 use crate::collision::Separation;
 
+/// The nearest points of a pair, and the ends of both segments.
+pub(super) const MOST_OF_A_PAIR: usize = 5;
+
 /// A pair and how far it is apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proximity {
@@ -9,10 +12,13 @@ pub struct Proximity {
     pub pair: usize,
     /// How far it is apart, where and in which direction.
     pub separation: Separation,
+    /// The longest lever by which a joint moves one of the two points \[m\]: a motion `dq` of the joints changes the distance by
+    /// `row dq` less `1/2 lever (sum |dq|)^2` at least, as far as it is decided by these points.
+    pub lever: f64,
 }
 
 /// Pairs that are near, each with the derivatives of its distance by the system's joints: what
-/// [`PlacedScene::within`](super::PlacedScene::within) finds.
+/// [`PlacedScene::within`](super::PlacedScene::within) or [`PlacedScene::contacts`](super::PlacedScene::contacts) finds.
 #[derive(Debug, Clone)]
 pub struct Proximities {
     columns: usize,
@@ -22,7 +28,8 @@ pub struct Proximities {
 
 impl Proximities {
     pub(super) fn with_capacity(pairs: usize, columns: usize) -> Proximities {
-        Proximities { columns, found: Vec::with_capacity(pairs), rows: Vec::with_capacity(pairs * columns) }
+        let most = pairs * MOST_OF_A_PAIR;
+        Proximities { columns, found: Vec::with_capacity(most), rows: Vec::with_capacity(most * columns) }
     }
 
     pub(super) fn clear(&mut self) {
@@ -46,6 +53,11 @@ impl Proximities {
     /// Returns whether no pair was found.
     pub fn is_empty(&self) -> bool {
         self.found.is_empty()
+    }
+
+    /// Returns the most that can be found.
+    pub fn capacity(&self) -> usize {
+        self.found.capacity()
     }
 
     /// Returns the pairs in the order of the scene, each with the derivatives of its distance by the system's joints \[m/rad\] or

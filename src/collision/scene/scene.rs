@@ -7,6 +7,9 @@ use super::proximities::Proximity;
 use crate::collision::{Capsule, Separation, Shape};
 use crate::robot::{LinkKinematics, LinkScratch};
 
+/// Points nearer to each other than this are one \[m\].
+const SAME_POINT: f64 = 1e-9;
+
 /// Machines among obstacles, and the pairs of them that are to be kept apart.
 ///
 /// ```
@@ -170,9 +173,75 @@ impl PlacedScene<'_> {
             }
             let separation = self.separation(pair);
             if separation.distance <= influence {
-                let row = found.push(Proximity { pair, separation });
-                self.add_derivatives(pair, &separation, row);
+                self.note(pair, &separation, found);
             }
+        }
+    }
+
+    /// Finds what [`within`](PlacedScene::within) does and, behind each pair, the ends of its capsules that are no farther from
+    /// the other body than `influence` \[m\] either. Where bodies come to lie side by side the nearest points jump from one end
+    /// to the other: what holds for the ends as well holds through the jump. Allocates nothing where `found` is of the scene.
+    pub fn contacts(&self, influence: f64, found: &mut Proximities) {
+        found.clear();
+        for pair in 0..self.scene.pairs.len() {
+            if self.least_distance(pair) > influence {
+                continue;
+            }
+            let separation = self.separation(pair);
+            if separation.distance > influence {
+                continue;
+            }
+            self.note(pair, &separation, found);
+            let Pair { body, other } = self.scene.pairs[pair];
+            let one = self.scratch.placed[body].capsule;
+            for end in one.ends() {
+                let of_end = match other {
+                    Other::Body(other) => end.separation(&self.scratch.placed[other].capsule),
+                    Other::Obstacle(obstacle) => end.separation_from(&self.scene.obstacles[obstacle].1),
+                };
+                self.note_end(pair, &separation, of_end, influence, found);
+            }
+            if let Other::Body(other) = other {
+                for end in self.scratch.placed[other].capsule.ends() {
+                    self.note_end(pair, &separation, one.separation(&end), influence, found);
+                }
+            }
+        }
+    }
+
+    /// Takes note of an end, unless it is too far or the nearest point itself.
+    fn note_end(
+        &self,
+        pair: usize,
+        nearest: &Separation,
+        of_end: Separation,
+        influence: f64,
+        found: &mut Proximities,
+    ) {
+        let apart = (0..2).map(|side| (of_end.points[side] - nearest.points[side]).amax());
+        if of_end.distance <= influence && apart.fold(0.0, f64::max) > SAME_POINT {
+            self.note(pair, &of_end, found);
+        }
+    }
+
+    fn note(&self, pair: usize, separation: &Separation, found: &mut Proximities) {
+        let lever = self.lever(pair, separation);
+        let row = found.push(Proximity { pair, separation: *separation, lever });
+        self.add_derivatives(pair, separation, row);
+    }
+
+    /// The longest lever by which a joint moves one of the witness points.
+    fn lever(&self, pair: usize, separation: &Separation) -> f64 {
+        let Pair { body, other } = self.scene.pairs[pair];
+        let lever = |body: usize, point: &Vector3<f64>| {
+            let &Body { machine, link, .. } = &self.scene.bodies[body];
+            let posed = self.scene.machines[machine].kinematics.posed(&self.scratch.machines[machine]);
+            posed.lever(link, point)
+        };
+        let own = lever(body, &separation.points[0]);
+        match other {
+            Other::Body(other) => own.max(lever(other, &separation.points[1])),
+            Other::Obstacle(_) => own,
         }
     }
 
@@ -185,7 +254,7 @@ impl PlacedScene<'_> {
             if self.least_distance(pair) < bound {
                 let separation = self.separation(pair);
                 if separation.distance < bound {
-                    best = Some(Proximity { pair, separation });
+                    best = Some(Proximity { pair, separation, lever: self.lever(pair, &separation) });
                 }
             }
         }

@@ -1,5 +1,6 @@
-use super::super::Instant;
+use super::super::{Avoidance, Instant};
 use super::{Criterion, CriterionKind, MakeCriterion};
+use crate::collision::Proximity;
 use crate::kind::{Form, Kind, Parameter, Parameters};
 
 /// Moves the arms away from what is near: the steepest descent of the potential `U = 1/2 sum (influence - d)^2` over all pairs of
@@ -26,11 +27,20 @@ impl Clearance {
     }
 }
 
+/// The nearest points of every pair, without the ends behind them.
+fn nearest<'a>(avoidance: &Avoidance<'a>) -> impl Iterator<Item = (&'a Proximity, &'a [f64])> {
+    let mut last = None;
+    avoidance
+        .contacts
+        .iter()
+        .filter(move |(proximity, _)| last.replace(proximity.pair) != Some(proximity.pair))
+}
+
 impl Criterion for Clearance {
     fn velocity(&mut self, instant: &Instant<'_>, c: &mut [f64]) {
         c.fill(0.0);
         let Some(avoidance) = instant.avoidance else { return };
-        for (proximity, row) in avoidance.pairs.iter() {
+        for (proximity, row) in nearest(&avoidance) {
             let push = self.rate * (avoidance.influence - proximity.separation.distance);
             for (c, slope) in c.iter_mut().zip(row) {
                 *c += push * slope;
@@ -46,7 +56,7 @@ impl Criterion for Clearance {
     fn rate_at(&self, instant: &Instant<'_>) -> f64 {
         let Some(avoidance) = instant.avoidance else { return 0.0 };
         let squares = |(_, row): (_, &[f64])| row.iter().map(|slope| slope * slope).sum::<f64>();
-        self.rate * avoidance.pairs.iter().map(squares).sum::<f64>()
+        self.rate * nearest(&avoidance).map(squares).sum::<f64>()
     }
 
     fn keeps_distances(&self) -> bool {

@@ -25,8 +25,9 @@ impl Nearby {
         }
     }
 
-    pub(in crate::planner) fn pairs(&self) -> usize {
-        self.scene.pairs()
+    /// How many rows there may be.
+    pub(in crate::planner) fn rows(&self) -> usize {
+        self.found.capacity()
     }
 
     /// What the two bodies of a pair are called.
@@ -34,13 +35,13 @@ impl Nearby {
         self.scene.pair_names(pair)
     }
 
-    /// Finds the pairs that are near at the joint positions `q`.
+    /// Finds what is near at the joint positions `q`.
     pub(in crate::planner) fn look(&mut self, q: &[f64]) {
-        self.scene.place(q, &mut self.scratch).within(self.influence, &mut self.found);
+        self.scene.place(q, &mut self.scratch).contacts(self.influence, &mut self.found);
     }
 
     /// What was found last.
     pub(in crate::planner) fn avoidance(&self) -> Avoidance<'_> {
-        Avoidance { pairs: &self.found, margin: self.margin, influence: self.influence, speed: self.speed }
+        Avoidance { contacts: &self.found, margin: self.margin, influence: self.influence, speed: self.speed }
     }
 }

@@ -104,7 +104,7 @@ impl System {
             joints: union.names(),
             axes: tips.iter().map(|tip| tip.axes.len()).collect(),
             sigma,
-            pairs: nearby.as_ref().map_or(0, Nearby::pairs),
+            contacts: nearby.as_ref().map_or(0, Nearby::rows),
         };
         if let Some(objection) = law.objection(&shape) {
             let arms = members.iter().map(|member| member.name.as_str()).collect::<Vec<_>>().join("`, `");

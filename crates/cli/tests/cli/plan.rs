@@ -83,6 +83,24 @@ fn every_scenario_of_the_examples_completes_within_its_limits() {
 }
 
 #[test]
+fn the_margin_is_kept_by_the_law_that_knows_of_it_and_not_by_the_other() {
+    let kept = kinstep(&["plan", "examples/obstacle.toml", "--json"]).expect(0).json();
+    assert!(number(&kept["distance"]["minimum"]) >= 0.02, "{}", kept["distance"]);
+    assert_eq!(kept["distance"]["ok"], true);
+    let blind = ["plan", "examples/obstacle.toml", "--set", "law.kind=pseudoinverse"];
+    let direct = kinstep(&[&blind[..], &["--json"]].concat()).expect(1).json();
+    assert!(number(&direct["distance"]["minimum"]) < 0.0, "{}", direct["distance"]);
+    assert_eq!(direct["distance"]["pair"], serde_json::json!(["arm panda_link6", "ball"]));
+    let said = kinstep(&blind).expect(1).stdout();
+    assert!(
+        said.contains("between arm panda_link6 and ball (margin 0.02 m, not kept), at t = 3.2"),
+        "{said}"
+    );
+    let plain = kinstep(&["plan", "examples/planar_dual.toml", "--json"]).expect(0).json();
+    assert!(plain["distance"].is_null());
+}
+
+#[test]
 fn the_split_row_of_order_six_stays_below_1e_10() {
     let plan = kinstep(&["plan", "examples/dual_panda_split_ab6.toml", "--json"]).expect(0).json();
     assert_eq!((number(&plan["sigma"]), number(&plan["h"])), (0.01, 1.0));

@@ -344,3 +344,105 @@ proptest::proptest! {
         let _ = with(&[&assignment]);
     }
 }
+
+/// A Panda beside obstacles.
+const BESIDE: &str = r#"sigma = 0.01
+duration = 2.0
+
+[collision]
+margin = 0.02
+
+[[obstacle]]
+kind = "sphere"
+center = [0.25, 0.25, 0.6]
+radius = 0.08
+
+[[arm]]
+name = "arm"
+robot = "panda"
+base = "panda_link0"
+tip = "panda_hand_tcp"
+task = "position"
+q0 = [0, -0.6, 0, -2.2, 0, 1.6, 0.8]
+path = { kind = "line", displacement = [0, 0.1, 0] }
+"#;
+
+fn beside(more: &str) -> Result<kinstep::planner::Planner, ScenarioError> {
+    let text = ScenarioText::parse(&BESIDE.replacen("margin = 0.02", more, 1))?;
+    let table = kinstep::formula::FormulaTable::builtin();
+    text.scenario()?.planner(table, None).map_err(|error| text.placed(error))
+}
+
+#[test]
+fn obstacles_are_read_written_and_looked_at() {
+    let plan = beside("margin = 0.02").unwrap().run();
+    let closest = plan.distance.as_ref().unwrap();
+    assert_eq!((closest.margin, closest.course.len()), (0.02, plan.samples()));
+    let scenario = read(BESIDE).unwrap();
+    assert_eq!(read(&scenario.to_toml()).unwrap(), scenario);
+    // Without pairs of its own links what is nearest is the ball.
+    let plan = beside("margin = 0.02\nself = false\ninfluence = 0.3\nclosing_speed = 0.1").unwrap().run();
+    assert_eq!(plan.distance.unwrap().pair[1], "sphere");
+    let allowed =
+        r#"allowed = [["panda_link6", "sphere"], ["panda_link5", "sphere"], ["panda_hand", "sphere"]]"#;
+    let plan = beside(&format!("margin = 0.02\nself = false\n{allowed}")).unwrap().run();
+    assert_eq!(plan.distance.unwrap().pair[0], "arm panda_link7");
+}
+
+#[test]
+fn laws_that_keep_distances_see_all_arms() {
+    let second = BESIDE[BESIDE.find("[[arm]]").unwrap()..].replacen("\"arm\"", "\"other\"", 1);
+    let law = "[law]\nkind = \"qp\"\n\n[collision]";
+    let both = BESIDE.replacen("[collision]", law, 1) + &second + "mount = { xyz = [0, -1, 0] }\n";
+    let text = ScenarioText::parse(&both).unwrap();
+    let table = kinstep::formula::FormulaTable::builtin();
+    let plan = text.scenario().unwrap().planner(table, None).unwrap().run();
+    assert!(plan.is_completed() && plan.keeps_distances(), "{:?} {:?}", plan.reason, plan.distance);
+}
+
+#[test]
+fn what_is_wrong_around_the_arms_is_said_with_its_place() {
+    let said = |more: &str| beside(more).map(|_| ()).unwrap_err();
+    let near = said("margin = 0.2");
+    assert_eq!(place(&near), (5, 10));
+    assert!(
+        near.message.contains("start 0.") && near.message.contains("the margin is 0.2 m"),
+        "{}",
+        near.message
+    );
+    assert!(said("margin = -0.1").message.contains("-0.1 m is not a margin"));
+    assert!(
+        said("margin = 0.02\ninfluence = 0.01").message.contains("0.01 m is not beyond the margin of 0.02 m")
+    );
+    assert!(said("margin = 0.02\nclosing_speed = 0").message.contains("0 m/s is not a closing speed"));
+    let slip = said("margni = 0.02").message;
+    assert!(slip.contains("did you mean") && slip.contains("margin"), "{slip}");
+    let pair = said("margin = 0.02\nallowed = [[\"panda_link6\", \"spere\"]]");
+    assert!(
+        pair.message.contains("there is no link or obstacle \"spere\"; did you mean"),
+        "{}",
+        pair.message
+    );
+    assert!(said("margin = 0.02\nsrdf = \"lost.srdf\"").message.contains("collision.srdf: lost.srdf"));
+    let with = |from: &str, to: &str| read(&BESIDE.replacen(from, to, 1)).unwrap_err();
+    assert!(with("kind = \"sphere\"", "kind = \"shpere\"").message.contains("did you mean"));
+    assert!(with("radius = 0.08", "radius = -1").message.contains("-1 m is not a radius; it is positive"));
+    assert!(with("radius = 0.08", "").message.contains("a sphere needs this"));
+    assert!(
+        with("radius = 0.08", "radius = 0.08\nsize = [1, 1, 1]")
+            .message
+            .contains("a sphere has no such parameter")
+    );
+    assert!(with("[collision]\nmargin = 0.02\n", "").message.contains("without a table [collision]"));
+    let robot = |robot: &str| {
+        let text = BESIDE.replacen("\"panda\"", robot, 1);
+        read(&text)
+            .unwrap()
+            .planner(kinstep::formula::FormulaTable::builtin(), None)
+            .map(|_| ())
+            .unwrap_err()
+            .message
+    };
+    let bare = "'<robot name=\"r\"><link name=\"panda_link0\"/></robot>'";
+    assert!(robot(bare).contains("panda_hand_tcp"), "{}", robot(bare));
+}

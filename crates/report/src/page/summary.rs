@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::PlanPage;
 use super::markup::{escaped, plain};
-use crate::plan_text::{approach_of, disturbed_by, kept_together, mean_squares};
+use crate::plan_text::{approach_of, came_near, disturbed_by, kept_together, mean_squares};
 use crate::short;
 use kinstep::planner::{ArmPlan, Plan, PlanStatus};
 
@@ -67,6 +67,9 @@ fn facts(plan: &Plan) -> String {
 /// How a run ended: class, icon, words.
 fn outcome(plan: &Plan) -> (&'static str, &'static str, &'static str) {
     match plan.status {
+        PlanStatus::Completed if !plan.keeps_distances() => {
+            ("fair", "\u{25b2}", "Completed, but bodies came nearer to each other than they may.")
+        }
         PlanStatus::Completed if plan.is_within_limits() => {
             ("good", "\u{2714}", "Completed, within all limits that are known.")
         }
@@ -176,8 +179,9 @@ pub(super) fn numbers(plan: &Plan) -> String {
         heading.iter().fold(String::new(), |all, name| all + &format!("<th scope=\"col\">{name}</th>"));
     let rows = plan.arms.iter().map(|arm| number_row(plan, arm)).collect::<String>();
     format!(
-        "<table class=\"numbers\"><thead><tr>{heading}</tr></thead><tbody>{rows}</tbody></table>{}",
-        crossed(plan)
+        "<table class=\"numbers\"><thead><tr>{heading}</tr></thead><tbody>{rows}</tbody></table>{}{}",
+        crossed(plan),
+        nearest(plan)
     )
 }
 
@@ -203,6 +207,14 @@ fn number_row(plan: &Plan, arm: &ArmPlan) -> String {
         escaped(&arm.name),
         cells.fold(String::new(), |all, cell| all + &format!("<td>{cell}</td>"))
     )
+}
+
+/// How near bodies came to each other.
+fn nearest(plan: &Plan) -> String {
+    let Some(closest) = &plan.distance else { return String::new() };
+    let mark = if closest.is_kept() { "" } else { "<span class=\"mark crossed\">\u{2716}</span> " };
+    let when = moment(closest.t, "where bodies are nearest");
+    format!("<p>{mark}{}, {when}</p>", escaped(&came_near(closest)))
 }
 
 /// The limits that were crossed, each where it was worst.

@@ -1,6 +1,7 @@
 //! The pictures of a plan: how the arms move, what their joints do, how far they are from their tasks.
 
 mod conditioning;
+mod distances;
 mod errors;
 mod joints;
 mod limits;
@@ -13,7 +14,7 @@ use nalgebra::Vector6;
 
 use crate::short;
 use kinstep::formula::FormulaTable;
-use kinstep::planner::Plan;
+use kinstep::planner::{ClosestApproach, Plan};
 use kinstep_files::trajectory::{ArmTrajectory, Recording, StagedArm};
 
 use super::figure::Figure;
@@ -42,6 +43,8 @@ pub struct PlanFigures<'a> {
     from: usize,
     to: usize,
     size: Option<(f64, f64)>,
+    /// How near bodies came to each other, where that is known.
+    distance: Option<&'a ClosestApproach>,
     /// How the run began: the starter's name and its number of steps.
     start: Option<(String, usize)>,
 }
@@ -53,7 +56,7 @@ struct Kind {
     draw: fn(&PlanFigures<'_>) -> Vec<Figure>,
 }
 
-const KINDS: [Kind; 9] = [
+const KINDS: [Kind; 10] = [
     Kind {
         name: "motion",
         shows: "the arms at intervals, with the paths of their tips",
@@ -70,6 +73,11 @@ const KINDS: [Kind; 9] = [
         name: "limits",
         shows: "the distance to the nearest joint limit over time",
         draw: limits::figures,
+    },
+    Kind {
+        name: "distances",
+        shows: "the least distance between bodies over time",
+        draw: distances::figures,
     },
 ];
 
@@ -89,6 +97,7 @@ impl<'a> PlanFigures<'a> {
             from: 0,
             to: trajectory.samples(),
             size: None,
+            distance: plan.and_then(|plan| plan.distance.as_ref()),
             start: start(recording, plan),
         }
     }
