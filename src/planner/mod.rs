@@ -24,4 +24,6 @@ pub use feedback::Feedback;
 pub use grid::{MAX_SAMPLE_BYTES, sample_bytes};
 pub use planner::Planner;
 pub use run::{ArmPlan, Convergence, Noise, Peak, Plan, PlanStatus, SharedJoints, Stop, TaskPlan};
-pub use system::{Arm, ArmState, DerivativeErrors, JointSystem, Violation, derivative_errors, joint_sets};
+pub use system::{
+    Arm, ArmState, DerivativeErrors, JointSystem, Violation, derivative_errors, joint_sets, rows_at_start,
+};

@@ -9,3 +9,4 @@ mod paper;
 mod shared;
 mod side_by_side;
 mod stops;
+mod tasks;

@@ -33,7 +33,7 @@ struct Document<'a> {
     noise: Option<Noise>,
     arms: Vec<Arm<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    tasks: Vec<Task<'a>>,
+    relations: Vec<Relation<'a>>,
     shared: Vec<Shared<'a>>,
     warnings: &'a [String],
 }
@@ -51,11 +51,14 @@ struct Noise {
 
 /// A task over the tips of several arms, beside their own.
 #[derive(Serialize)]
-struct Task<'a> {
+struct Relation<'a> {
     name: &'a str,
+    kind: &'a str,
     arms: &'a [String],
     rows: usize,
     max_error: f64,
+    max_position_error: f64,
+    max_orientation_error: f64,
 }
 
 /// Arms that were resolved as one system because they move joints in common.
@@ -75,6 +78,8 @@ struct Arm<'a> {
     rms_error_steady: f64,
     max_position_error: f64,
     max_orientation_error: f64,
+    /// By how much the joint that comes back least is away from its start at the end.
+    drift: f64,
     /// No sample on the path is below this.
     smallest_singular_value_at_least: f64,
     /// What it is at the sample where that bound was least; null where that is not known.
@@ -132,7 +137,7 @@ impl<'a> Document<'a> {
             lead: Some(plan.lead).filter(|&lead| lead > 0),
             noise: plan.noise.as_ref().map(Noise::of),
             arms: plan.arms.iter().map(Arm::of).collect(),
-            tasks: plan.tasks.iter().map(Task::of).collect(),
+            relations: plan.tasks.iter().map(Relation::of).collect(),
             shared: plan.shared.iter().map(|s| Shared { arms: &s.arms, joints: &s.joints }).collect(),
             warnings: &plan.warnings,
         }
@@ -147,9 +152,17 @@ impl Noise {
     }
 }
 
-impl<'a> Task<'a> {
+impl<'a> Relation<'a> {
     fn of(task: &'a TaskPlan) -> Self {
-        Self { name: &task.name, arms: &task.arms, rows: task.rows, max_error: task.max_error() }
+        Self {
+            name: &task.name,
+            kind: &task.kind,
+            arms: &task.arms,
+            rows: task.rows,
+            max_error: task.max_error(),
+            max_position_error: task.max_position_error(),
+            max_orientation_error: task.max_orientation_error(),
+        }
     }
 }
 
@@ -171,6 +184,7 @@ impl<'a> Arm<'a> {
             rms_error_steady: arm.rms_error_steady,
             max_position_error: arm.max_position_error,
             max_orientation_error: arm.max_orientation_error,
+            drift: arm.drift(),
             smallest_singular_value_at_least: arm.smallest_singular_value.0,
             smallest_singular_value_at_most: arm.worst_singular_value,
             damped_samples: arm.damped_samples,

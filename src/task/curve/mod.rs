@@ -4,6 +4,7 @@ mod astroid;
 mod circle;
 mod curve_kind;
 mod fourier;
+mod hold;
 mod line;
 mod lissajous;
 mod planar_curve;
@@ -14,6 +15,7 @@ pub use astroid::Astroid;
 pub use circle::Circle;
 pub use curve_kind::{CurveKind, MakeCurve};
 pub use fourier::Fourier;
+pub use hold::Hold;
 pub use line::Line;
 pub use lissajous::Lissajous;
 pub use planar_curve::PlanarCurve;
@@ -21,8 +23,16 @@ pub use rose::Rose;
 pub use tricuspid::Tricuspid;
 
 /// Every built-in curve.
-pub const CURVES: &[CurveKind] =
-    &[circle::KIND, tricuspid::KIND, astroid::KIND, line::KIND, lissajous::KIND, rose::KIND, fourier::KIND];
+pub const CURVES: &[CurveKind] = &[
+    circle::KIND,
+    tricuspid::KIND,
+    astroid::KIND,
+    line::KIND,
+    lissajous::KIND,
+    rose::KIND,
+    fourier::KIND,
+    hold::KIND,
+];
 
 #[cfg(test)]
 mod tests {

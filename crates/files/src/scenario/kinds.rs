@@ -117,7 +117,9 @@ impl Kinds {
             ["arm", .., "path", "time_law"] => Some(self.time_laws.names()),
             ["law", "kind"] => Some(self.laws.names()),
             ["law", "criterion", "kind"] => Some(self.criteria.names()),
-            ["task", .., "kind"] => Some(self.tasks.names()),
+            ["relation", .., "path" | "relative", "kind"] => Some(self.curves.names()),
+            ["relation", .., "path" | "relative", "time_law"] => Some(self.time_laws.names()),
+            ["relation", .., "kind"] => Some(self.tasks.names()),
             _ => None,
         }
     }

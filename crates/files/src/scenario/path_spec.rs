@@ -2,13 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::arm_task::ArmTask;
 use super::error::ScenarioError;
 use super::exactly::exactly;
 use super::key_path::KeyPath;
 use super::kind_reader::{KindTable, Misread, named};
 use super::kinds::Kinds;
 use kinstep::kind::{Parameters, Real, Value};
-use kinstep::task::{MakeCurve, Plane, TaskKind};
+use kinstep::task::{MakeCurve, Plane};
 
 /// A path for the tip. Curves are drawn in `plane`, turned by `rotation`, and shifted so that they begin at the
 /// tip's position at q0 unless `center` is given.
@@ -119,7 +120,7 @@ impl PathSpec {
         &self,
         at: &KeyPath,
         kinds: &Kinds,
-        task: TaskKind,
+        task: &ArmTask,
     ) -> Result<(), ScenarioError> {
         self.check_time_law(at, kinds)?;
         let table = self.table(at, kinds);
@@ -128,7 +129,7 @@ impl PathSpec {
             MakeCurve::Centered(_) => (&[], &KEYS[4..]),
             MakeCurve::FromTip(_) => (&[], &KEYS[5..]),
         };
-        table.check(&self.parameters, (before, after, &self.given()), task == TaskKind::PositionXy)
+        table.check(&self.parameters, (before, after, &self.given()), task.is_planar())
     }
 
     /// Returns every length and angle that lays the curve, by its key and, in a list, its place there.

@@ -15,7 +15,6 @@ use super::model::ArmSpec;
 use kinstep::inverse::{Search, Solution, Target};
 use kinstep::kind::Real;
 use kinstep::robot::Chain;
-use kinstep::task::TaskKind;
 
 /// Where the tip of an arm starts: on its path, or at a pose in the world.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -94,10 +93,11 @@ impl StartPose {
             // The path has been checked to have a centre, so that where the tip stands does not matter.
             None => arm
                 .path
-                .motion_with(kinds, &IsometryMatrix3::identity(), duration)
+                .as_ref()
+                .and_then(|path| path.motion_with(kinds, &IsometryMatrix3::identity(), duration))
                 .map_or_else(Vector3::zeros, |motion| motion.at(0.0).position),
         };
-        let is_planar = xyz.or(arm.path.center.as_deref()).is_some_and(|given| given.len() == 2);
+        let is_planar = xyz.or(center(arm)).is_some_and(|given| given.len() == 2);
         match rpy {
             Some(rpy) => {
                 let [roll, pitch, yaw] = rpy.each_ref().map(Real::value);
@@ -153,19 +153,27 @@ fn place(p: &Vector3<f64>) -> String {
     format!("({:.4}, {:.4}, {:.4})", p.x, p.y, p.z)
 }
 
+/// The centre of the arm's path, where it has one.
+fn center(arm: &ArmSpec) -> Option<&[Real]> {
+    arm.path.as_ref()?.center.as_deref()
+}
+
 /// Whether a start on the path makes sense: the sentence against it, if not.
 pub(super) fn objection(arm: &ArmSpec, start: &StartPose) -> Option<String> {
     let (xyz, rpy) = start.parts();
-    if rpy.is_none() && arm.task == TaskKind::Pose {
+    if rpy.is_none() && arm.task.turns() {
         return Some("the task \"pose\" needs to know how the tip is turned: give rpy".to_owned());
     }
-    if xyz.is_none() && arm.path.center.is_none() {
-        let kind = &arm.path.kind;
+    if xyz.is_none() && center(arm).is_none() {
+        let Some(path) = &arm.path else {
+            return Some("an arm without a path starts where it is told: give xyz".to_owned());
+        };
         return Some(format!(
-            "where the {kind} begins is not known, since it begins at the tip; give xyz (a curve with a `center` begins on its own)"
+            "where the {} begins is not known, since it begins at the tip; give xyz (a curve with a `center` begins on its own)",
+            path.kind
         ));
     }
-    let is_planar = xyz.or(arm.path.center.as_deref()).is_some_and(|given| given.len() == 2);
+    let is_planar = xyz.or(center(arm)).is_some_and(|given| given.len() == 2);
     (rpy.is_some() && is_planar)
         .then(|| "beside an orientation the position needs all of x, y and z".to_owned())
 }
