@@ -148,7 +148,7 @@ pub(in crate::planner) fn check_added_tasks(system: &System, arms: &[ArmRuntime]
         let names = system.arms_of(state).collect::<Vec<_>>().join("`, `");
         let reason = format!(
             "task `{}` of `{names}` was lost at t = {t:.6} s with an error of {:.3e}; {why}",
-            state.task.name(),
+            state.name,
             error.norm()
         );
         return Some(Stop { status, reason });
