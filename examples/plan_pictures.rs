@@ -1,4 +1,4 @@
-//! Plans two scenarios and draws them: the pictures of the README.
+//! Plans scenarios and draws them: pictures of the README and of docs.
 //!
 //! `cargo run --example plan_pictures -- docs/pictures` (without a folder the pictures are only listed).
 
@@ -13,9 +13,10 @@ use kinstep_files::trajectory::{About, Recording, Trajectory};
 use kinstep_report::figure::{Figure, PlanFigures};
 
 /// The scenarios, and which of their pictures are shown.
-const SHOWN: [(&str, &str, &[&str]); 2] = [
+const SHOWN: [(&str, &str, &[&str]); 3] = [
     ("planar_dual", include_str!("planar_dual.toml"), &["motion", "errors"]),
     ("dual_panda", include_str!("dual_panda.toml"), &["motion-slanted", "velocities-left"]),
+    ("waypoints", include_str!("waypoints.toml"), &["motion-slanted"]),
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -33,9 +34,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn pictures(text: &str) -> Result<Vec<Figure>, Box<dyn Error>> {
+    let folder = Some(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples")));
     let scenario = ScenarioText::parse(text)?.scenario()?;
-    let stage = scenario.stage(None)?;
-    let plan = scenario.planner(FormulaTable::builtin(), None)?.run();
+    let stage = scenario.stage(folder)?;
+    let plan = scenario.planner(FormulaTable::builtin(), folder)?.run();
     let trajectory = Trajectory::of(&plan, Some(About::of(&plan, text, &stage)));
     let recording = Recording { trajectory: &trajectory, stage: &stage };
     Ok(PlanFigures::new(recording, Some(&plan)).draw())

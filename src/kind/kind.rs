@@ -28,7 +28,7 @@ pub struct Kind<Make> {
     /// Makes one of parameters that were checked: all that are required are there and of their forms.
     pub make: Make,
     /// Says what is wrong with parameters that are all right one by one.
-    pub objection: Option<fn(&Parameters) -> Option<&'static str>>,
+    pub objection: Option<fn(&Parameters) -> Option<String>>,
     /// Draws parameters at random, for tests.
     pub draw: Option<DrawParameters>,
 }
@@ -49,7 +49,7 @@ impl<Make> Kind<Make> {
 
     /// The same with an objection to parameters that do not go together.
     #[must_use]
-    pub const fn with_objection(mut self, objection: fn(&Parameters) -> Option<&'static str>) -> Self {
+    pub const fn with_objection(mut self, objection: fn(&Parameters) -> Option<String>) -> Self {
         self.objection = Some(objection);
         self
     }

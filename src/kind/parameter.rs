@@ -75,6 +75,8 @@ pub enum Form {
     Point,
     /// Any number of vectors of three numbers.
     Vectors,
+    /// Any number of quaternions x, y, z, w.
+    Quaternions,
     /// A word.
     Text,
     /// One of these words.
@@ -114,7 +116,8 @@ impl Form {
             Self::Number | Self::Positive { .. } => number(written)?,
             Self::Numbers | Self::Point => numbers(written)?,
             Self::Pair => of_length(2, numbers(written)?)?,
-            Self::Vectors => Value::List(vectors(written)?),
+            Self::Vectors => Value::List(rows(3, written)?),
+            Self::Quaternions => Value::List(rows(4, written)?),
             Self::Text => match written {
                 Value::Text(_) => written.clone(),
                 _ => return Err(written.instead_of("text").into()),
@@ -172,13 +175,13 @@ fn by_joint(written: &Value) -> Result<Value, String> {
     entries.iter().map(entry).collect::<Result<_, String>>().map(Value::Table)
 }
 
-fn vectors(written: &Value) -> Result<Vec<Value>, WrongForm> {
+fn rows(length: usize, written: &Value) -> Result<Vec<Value>, WrongForm> {
     let Value::List(values) = written else { return Err(written.instead_of("a list").into()) };
-    let vector = |(index, value)| {
-        let numbers = numbers(value).map_err(|wrong| WrongForm { index: Some(index), ..wrong })?;
-        of_length(3, numbers)
+    let row = |(index, value)| {
+        let numbers = numbers(value).and_then(|numbers| of_length(length, numbers));
+        numbers.map_err(|wrong| WrongForm { index: Some(index), ..wrong })
     };
-    values.iter().enumerate().map(vector).collect()
+    values.iter().enumerate().map(row).collect()
 }
 
 fn of_length(length: usize, numbers: Value) -> Result<Value, WrongForm> {
@@ -214,7 +217,10 @@ mod tests {
             "\"tau\", column 1: 'tau' is not known; known are pi and functions such as sin, atan2, sqrt, min"
         );
         assert_eq!(problem(Form::Pair, [1.0, 2.0, 3.0]), (None, "expected 2 numbers, got 3".to_owned()));
-        assert_eq!(problem(Form::Vectors, vec![[1.0, 2.0]]), (None, "expected 3 numbers, got 2".to_owned()));
+        assert_eq!(
+            problem(Form::Vectors, vec![[1.0, 2.0]]),
+            (Some(0), "expected 3 numbers, got 2".to_owned())
+        );
         assert_eq!(problem(Form::Numbers, 3.0).1, "invalid type: floating point `3.0`, expected a list");
         assert_eq!(problem(Form::Numbers, [Value::from(1.0), true.into()]).0, Some(1));
         assert_eq!(problem(Form::Text, 1.0).1, "invalid type: floating point `1.0`, expected text");

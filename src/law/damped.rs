@@ -261,14 +261,15 @@ pub(super) const KIND: LawKind = Kind::new(
 )
 .with_objection(|given| {
     let has = |name| given.get(name).is_some();
-    match given.text("method").unwrap_or("adaptive") {
+    let objection = match given.text("method").unwrap_or("adaptive") {
         "constant" if !has("damping") => Some("constant damping needs its factor `damping`"),
         "selective" if has("damping") => Some("selective damping has no factor `damping`; `max_velocity` bounds it"),
         "adaptive" | "constant" if has("max_velocity") => {
             Some("`max_velocity` is of method = \"selective\" only; `damping` is what bounds the others")
         }
         _ => None,
-    }
+    };
+    objection.map(str::to_owned)
 });
 
 fn damping(given: &Parameters) -> Damping {

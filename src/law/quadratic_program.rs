@@ -151,7 +151,7 @@ pub(super) const KIND: LawKind = Kind::new(
 )
 .with_objection(|given| {
     let is_idle = given.get("regularization").is_some() && given.text("tasks") != Some("least-squares");
-    is_idle.then_some("`regularization` acts with tasks = \"least-squares\" only")
+    is_idle.then(|| "`regularization` acts with tasks = \"least-squares\" only".to_owned())
 });
 
 fn method(given: &Parameters) -> ActiveSetMethod {

@@ -4,7 +4,7 @@ use super::grid::grid;
 use super::planner::Planner;
 use super::resolve::resolved;
 use super::run::{Description, DistanceWatch, Evaluated, Noise, SynchronousField};
-use super::system::{Arm, JointIndex, JointSystem, Surroundings, System};
+use super::system::{Arm, ArmRuntime, JointIndex, JointSystem, Surroundings, System};
 use crate::formula::Formula;
 use crate::integrate::{IntegrateError, Multistep, Starter};
 use crate::law::LinearityKind;
@@ -144,6 +144,7 @@ impl PlannerBuilder {
         let asked = (sigma, self.allow_unstable);
         let feedback = feedback_step(formula, self.feedback, &kinds, asked, &mut warnings)?;
         warn_about_start(formula, &starter, steps, &mut warnings);
+        let smoothness = smoothness(formula, &arms, &mut warnings);
         warnings.extend(warnings_of_arms);
         let largest_criterion_rate = check_criteria(formula, &systems, sigma)?;
         warnings.extend(systems.iter().filter_map(too_few_in_system));
@@ -173,6 +174,7 @@ impl PlannerBuilder {
             lead,
             watch,
             factor: (factor, formula.steps()),
+            smoothness,
             warnings,
         };
         Ok(Planner::begin(description, stepper, field, noise))
@@ -280,6 +282,23 @@ fn warn_about_start(formula: &Formula, starter: &Starter<f64>, steps: usize, war
             formula.steps() - 1
         ));
     }
+}
+
+/// How many derivatives of the motions of all arms are continuous, if not all. A formula of a higher order does not show it.
+fn smoothness(formula: &Formula, arms: &[ArmRuntime], warnings: &mut Vec<String>) -> Option<usize> {
+    let smoothness = |runtime: &ArmRuntime| {
+        let (_, motion) = runtime.arm.task.tracking()?;
+        Some((motion.smoothness()?, runtime.arm.name.clone()))
+    };
+    let (least, arm) = arms.iter().filter_map(smoothness).min()?;
+    if least < formula.order() {
+        let (id, p, power) = (formula.id(), formula.order(), least + 1);
+        warnings.push(format!(
+            "the motion of arm `{arm}` has {least} continuous derivative{}: errors fall like O(sigma^{power}) at best, whatever the order {p} of formula `{id}`",
+            if least == 1 { "" } else { "s" }
+        ));
+    }
+    Some(least)
 }
 
 fn too_few_joints(arm: &Arm) -> Option<String> {

@@ -82,6 +82,11 @@ impl Planner {
         &self.description().warnings
     }
 
+    /// How many derivatives of the motions are continuous, if not all: errors fall like `sigma` to one power more at best.
+    pub fn smoothness(&self) -> Option<usize> {
+        self.description().smoothness
+    }
+
     /// Whether the last sample was reached or the run has stopped.
     pub fn is_finished(&self) -> bool {
         self.ensemble.is_finished(0)

@@ -30,6 +30,10 @@ impl<P: Path> Path for Leaning<P> {
         let rate = 0.5 * self.angle * TAU * sine;
         (Rotation3::from_axis_angle(&self.axis, angle), self.axis.into_inner() * rate)
     }
+
+    fn smoothness(&self) -> Option<usize> {
+        self.path.smoothness()
+    }
 }
 
 #[cfg(test)]

@@ -11,10 +11,12 @@ mod path;
 mod task;
 mod time_law;
 mod tracking;
+mod waypoints;
 
 pub use added_task::{AddedTaskKind, MadeTask, MakeTask, TaskStart};
 pub use curve::{
-    Astroid, CURVES, Circle, CurveKind, Fourier, Line, Lissajous, MakeCurve, PlanarCurve, Rose, Tricuspid,
+    Astroid, CURVES, Circle, CurveKind, Fourier, Line, Lissajous, MakeCurve, PlanarCurve, Polyline, Rose,
+    Spline, Tricuspid,
 };
 pub use distance::Distance;
 pub use error::TaskKind;
@@ -23,8 +25,11 @@ pub(crate) use motion::place_of_sample;
 pub use motion::{Motion, Reference};
 pub use path::{Path, PathPoint, Planar, Plane, Turning};
 pub use task::{Component, Task, TaskInstant, TaskRows, Tip};
-pub use time_law::{Linear, Quintic, Sin2, Sin2Sin2, TIME_LAWS, TimeLaw, TimeLawKind};
+pub use time_law::{
+    Linear, MakeTimeLaw, Quintic, SCurve, Sin2, Sin2Sin2, TIME_LAWS, TimeLaw, TimeLawKind, Trapezoid,
+};
 pub use tracking::Tracking;
+pub use waypoints::{Ends, QuinticSpline, RotationSpline, WaypointProblem, Waypoints};
 
 pub(crate) use error::pose_error;
 

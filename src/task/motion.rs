@@ -108,6 +108,17 @@ impl Motion {
         }
     }
 
+    /// How many derivatives of path and time law are continuous; `None` where all are, or where that is not known because the
+    /// motion was sampled.
+    pub fn smoothness(&self) -> Option<usize> {
+        match &self.course {
+            Course::Curve(curve) => {
+                curve.path.smoothness().into_iter().chain(curve.time_law.smoothness()).min()
+            }
+            Course::Samples { .. } => None,
+        }
+    }
+
     /// The references that it was made of and their gap \[s\], if it was sampled beforehand.
     pub(crate) fn samples(&self) -> Option<(&Arc<[Reference]>, f64)> {
         match &self.course {

@@ -34,6 +34,19 @@ pub trait Path: Send + Sync {
     fn turn(&self, _u: f64) -> (Rotation3<f64>, Vector3<f64>) {
         (Rotation3::identity(), Vector3::zeros())
     }
+
+    /// The orientation with which it begins in its own axes, if it has orientations and not only turns. A path that is laid to
+    /// where a tip stands turns the tip's own orientation.
+    fn initial_orientation(&self) -> Option<Rotation3<f64>> {
+        None
+    }
+
+    /// How many derivatives by `u` are continuous from beginning to end; `None` where all are, as unless overridden.
+    ///
+    /// With `k` of them the errors of a run fall like `sigma^(k+1)` at best, whatever the order of its formula.
+    fn smoothness(&self) -> Option<usize> {
+        None
+    }
 }
 
 impl<F: Fn(f64) -> PathPoint + Send + Sync> Path for F {
@@ -49,6 +62,14 @@ impl Path for Box<dyn Path> {
 
     fn turn(&self, u: f64) -> (Rotation3<f64>, Vector3<f64>) {
         (**self).turn(u)
+    }
+
+    fn initial_orientation(&self) -> Option<Rotation3<f64>> {
+        (**self).initial_orientation()
+    }
+
+    fn smoothness(&self) -> Option<usize> {
+        (**self).smoothness()
     }
 }
 
@@ -141,5 +162,9 @@ impl<P: Path> Path for Turning<P> {
 
     fn turn(&self, u: f64) -> (Rotation3<f64>, Vector3<f64>) {
         (Rotation3::from_axis_angle(&self.axis, self.angle * u), self.axis.into_inner() * self.angle)
+    }
+
+    fn smoothness(&self) -> Option<usize> {
+        self.path.smoothness()
     }
 }

@@ -8,11 +8,13 @@ use kinstep::integrate::{
 };
 use kinstep::kind::{Parameters, Value};
 use kinstep::law::{CRITERIA, Clearance, LAWS, QuadraticProgram};
-use kinstep::nalgebra::{IsometryMatrix3, Vector3};
+use kinstep::nalgebra::{IsometryMatrix3, Rotation3, Vector3};
 use kinstep::planner::{Arm, Batch, Noise, Planner, PlannerBuilder, Surroundings};
 use kinstep::robot::{Limits, embedded};
 use kinstep::scheme;
-use kinstep::task::{Circle, Line, Motion, Planar, Plane, Sin2, TaskKind};
+use kinstep::task::{
+    Circle, Ends, Line, Motion, Path, Planar, Plane, Polyline, SCurve, Sin2, Spline, TaskKind, Waypoints,
+};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -63,6 +65,25 @@ fn a_thousand_steps_of_three_plans_at_once_allocate_nothing() {
         });
         assert_eq!((batch.index(2), batch.stop(2)), (1000, None));
         assert_eq!(spent.count_total, 0, "{spent:?}");
+    }
+}
+
+#[test]
+fn a_thousand_steps_along_waypoints_allocate_nothing() {
+    let points = [[0.0, 0.0, 0.0], [0.03, 0.0, 0.0], [0.03, 0.03, 0.0], [0.0, 0.03, 0.03]].map(Vector3::from);
+    let turns = [0.0, 0.1, 0.2, 0.1].map(|angle| Rotation3::new(Vector3::y() * angle));
+    let waypoints = Waypoints::new(points.to_vec(), Some(turns.to_vec()), None).unwrap();
+    let paths: [Box<dyn Path>; 2] = [
+        Box::new(Spline::through(&waypoints, Ends::Natural).unwrap()),
+        Box::new(Polyline::through(&waypoints, 0.01).unwrap()),
+    ];
+    for path in paths {
+        let chain = embedded::get("panda").unwrap().chain("panda_link0", "panda_link8").unwrap();
+        let q0 = vec![0.0, -0.6, 0.0, -2.2, 0.0, 1.6, 0.8];
+        let pose = chain.forward(&q0, &mut chain.scratch()).pose();
+        let motion = Motion::from_pose(path, SCurve { ramp: 0.3, rounding: 0.5 }, 2.0, &pose);
+        let arm = Arm::new("arm", chain, q0, TaskKind::Pose, motion);
+        steps_without_allocating(scheme::dtsmp([arm], 0.001, 0.4).duration(2.0).build().unwrap());
     }
 }
 

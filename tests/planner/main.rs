@@ -11,3 +11,4 @@ mod shared;
 mod side_by_side;
 mod stops;
 mod surroundings;
+mod waypoints;

@@ -12,7 +12,7 @@ use super::shell::{option, quoted};
 use kinstep::math::number_text;
 use kinstep::planner::{Plan, PlanStatus, Planner};
 use kinstep::robot::names::printable;
-use kinstep_files::scenario::{FormulaRows, Real, Scenario, ScenarioText};
+use kinstep_files::scenario::{FormulaRows, Kinds, Real, Scenario, ScenarioText};
 use kinstep_report::{PlanFormat, PlanJson, PlanText, Suggestion, plan_details, suggestions};
 
 /// The scenario that runs without a file.
@@ -36,10 +36,20 @@ pub(super) fn run(
     let stage = is_staged.then(|| scenario.stage(text.folder())).transpose().map_err(|e| text.placed(e))?;
     let results = Results::open(arguments, stage.as_ref())?;
     clock.done("reading");
-    let mut plan = run_planner(planner);
+    let mut sought = String::new();
+    let mut plan = if arguments.fastest {
+        let found = scenario.fastest(&Kinds::builtin(), table, text.folder(), run_planner);
+        let found = found.map_err(|e| text.placed(e))?;
+        scenario = found.scenario;
+        sought = found_in(found.runs, &found.plan);
+        found.plan
+    } else {
+        run_planner(planner)
+    };
     clock.done("planning");
     plan.warnings.extend(rows.warnings());
     plan.warnings.extend(scenario.limit_findings(text.folder()));
+    plan.warnings.extend(scenario.timing_findings(text.folder()));
     if output.is_verbose() {
         scenario.robot_findings(text.folder()).iter().for_each(|found| output.aside(&printable(found)));
     }
@@ -78,7 +88,7 @@ pub(super) fn run(
             )
         };
         output.report(&format!(
-            "{head}{chosen}{}{details}{}",
+            "{head}{chosen}{sought}{}{details}{}",
             written(&PlanText, &plan),
             closing(arguments, &names, next)
         ))?;
@@ -87,6 +97,17 @@ pub(super) fn run(
         output.aside(&clock.to_string());
     }
     Ok(exit(&plan))
+}
+
+/// Says what a search for the least duration found.
+fn found_in(runs: usize, plan: &Plan) -> String {
+    let duration = number_text(plan.duration());
+    let runs = if runs == 1 { "one plan".to_owned() } else { format!("{runs} plans") };
+    if plan.is_completed() {
+        format!("The least duration within the joints' limits of motion is {duration} s, found by {runs}.\n")
+    } else {
+        format!("No duration was found: after {runs} the run stops at {duration} s too.\n")
+    }
 }
 
 /// What the page is called.

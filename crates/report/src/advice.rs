@@ -1,8 +1,9 @@
 //! What would make a plan better.
 
+use super::plan_text::duration_within_limits;
 use kinstep::formula::{Formula, FormulaTable};
 use kinstep::math::number_text;
-use kinstep::planner::{LimitKind, Plan, PlanStatus};
+use kinstep::planner::{Plan, PlanStatus};
 use kinstep_files::scenario::Scenario;
 
 /// Something to try next.
@@ -34,18 +35,18 @@ pub fn suggestions(plan: &Plan, table: &FormulaTable, scenario: &Scenario) -> Ve
     if !plan.is_completed() {
         return next;
     }
-    if let Some(excess) = motion_excess(plan) {
-        let longer = (scenario.duration.value() * excess * 1.05).ceil();
-        next.push(Suggestion::new(
-            format!("--set duration={longer}"),
-            "slow enough for what limits the joints' motion",
-        ));
+    if let Some(longer) = duration_within_limits(plan) {
+        let reason = "slow enough for what limits the joints' motion";
+        next.push(Suggestion::new(format!("--set duration={longer}"), reason));
     }
     if errors_follow_the_order(plan, formula) {
         let halvings = formula.order() + usize::from(scenario.law.gain.is_none());
-        let (fold, held) =
-            (1_u64 << halvings.min(60), if scenario.law.gain.is_some() { "gain" } else { "h" });
-        let why = format!("errors about {fold} times smaller: order {} at the same {held}", formula.order());
+        let held = if scenario.law.gain.is_some() { "gain" } else { "h" };
+        let (power, because) = match plan.smoothness.map(|smooth| smooth + 1) {
+            Some(power) if power < halvings => (power, "as smooth as the path is".to_owned()),
+            _ => (halvings, format!("order {} at the same {held}", formula.order())),
+        };
+        let why = format!("errors about {} times smaller: {because}", 1_u64 << power.min(60));
         next.push(Suggestion::new(format!("--set sigma={}", number_text(plan.sigma / 2.0)), why));
     }
     if plan.formula != "split-ab6" {
@@ -63,20 +64,4 @@ fn errors_follow_the_order(plan: &Plan, formula: &Formula) -> bool {
     let worst = plan.arms.iter().map(|arm| arm.max_error).fold(0.0, f64::max);
     let left_over = formula.spectral_radius(plan.h).powf(plan.steps as f64 / 2.0);
     worst > ROUND_OFF && left_over < SETTLED && plan.noise.is_none()
-}
-
-/// How many times longer a run has to take for its velocities, accelerations and jerks to be within their limits, where they
-/// are not: they fall like the first, second and third power of the duration.
-fn motion_excess(plan: &Plan) -> Option<f64> {
-    let all = plan.arms.iter().flat_map(|arm| &arm.violations);
-    let excess = all.filter_map(|v| {
-        let excess = (v.value / v.limit).abs();
-        match v.kind {
-            LimitKind::Position => None,
-            LimitKind::Velocity => Some(excess),
-            LimitKind::Acceleration => Some(excess.sqrt()),
-            LimitKind::Jerk => Some(excess.cbrt()),
-        }
-    });
-    excess.filter(|excess| excess.is_finite()).reduce(f64::max)
 }

@@ -28,6 +28,9 @@ struct Document<'a> {
     start: &'static str,
     steps: usize,
     samples: usize,
+    duration: f64,
+    /// As of the arms, of all of them together.
+    feasible_duration: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     lead: Option<usize>,
     noise: Option<Noise>,
@@ -153,6 +156,9 @@ struct StartPose<'a> {
 #[derive(Serialize)]
 struct Limits<'a> {
     ok: bool,
+    /// The duration at which the arm would come just to its limits of velocity, acceleration and jerk; null where none is
+    /// known.
+    feasible_duration: Option<f64>,
     violations: Vec<Violation<'a>>,
 }
 
@@ -176,9 +182,11 @@ impl<'a> Document<'a> {
             start: plan.start,
             steps: plan.steps,
             samples: plan.samples(),
+            duration: plan.duration(),
+            feasible_duration: plan.feasible_duration(),
             lead: Some(plan.lead).filter(|&lead| lead > 0),
             noise: plan.noise.as_ref().map(Noise::of),
-            arms: plan.arms.iter().map(Arm::of).collect(),
+            arms: plan.arms.iter().map(|arm| Arm::of(plan, arm)).collect(),
             tasks: plan.tasks.iter().map(Task::of).collect(),
             stacks: plan.stacks.iter().map(Stack::of).collect(),
             shared: plan.shared.iter().map(|s| Shared { arms: &s.arms, joints: &s.joints }).collect(),
@@ -216,7 +224,7 @@ impl<'a> Stack<'a> {
 }
 
 impl<'a> Arm<'a> {
-    fn of(arm: &'a ArmPlan) -> Self {
+    fn of(plan: &Plan, arm: &'a ArmPlan) -> Self {
         let violations = arm.violations.iter().map(|v| Violation {
             joint: &v.joint,
             kind: v.kind.name(),
@@ -238,7 +246,14 @@ impl<'a> Arm<'a> {
             damped_samples: arm.damped_samples,
             lost_directions: arm.lost_directions.iter().map(Lost::of).collect(),
             drift: arm.drift(),
-            limits: Limits { ok: arm.violations.is_empty(), violations: violations.collect() },
+            limits: Limits {
+                ok: arm.violations.is_empty(),
+                feasible_duration: arm
+                    .time_scale
+                    .filter(|_| plan.is_completed())
+                    .map(|scale| scale * plan.duration()),
+                violations: violations.collect(),
+            },
             convergence: arm.convergence.as_ref().map(|convergence| Convergence {
                 initial_error: convergence.initial_error,
                 tolerance: convergence.tolerance,

@@ -4,7 +4,9 @@ use std::io::{self, Write};
 
 use super::{PlanFormat, Table, short, sparkline};
 use kinstep::math::number_text;
-use kinstep::planner::{ArmPlan, ClosestApproach, LostDirection, Noise, Plan, StackRank, TaskPlan};
+use kinstep::planner::{
+    ArmPlan, ClosestApproach, LimitKind, LostDirection, Noise, Plan, StackRank, TaskPlan,
+};
 
 /// Width of the curves of the task errors [characters].
 const CURVE: usize = 64;
@@ -61,6 +63,7 @@ impl PlanFormat for PlanText {
         }
         if !plan.is_within_limits() {
             write!(out, "\n{}", violations(&plan.arms))?;
+            would_do(plan).iter().try_for_each(|sentence| writeln!(out, "\n{sentence}"))?;
         }
         plan.warnings.iter().try_for_each(|warning| writeln!(out, "\nwarning: {warning}"))
     }
@@ -177,6 +180,23 @@ fn errors(plan: &Plan) -> Table {
         table.row(cells.into_iter().chain(errors.map(|e| format!("{e:.2e}"))).chain([limits]));
     }
     table
+}
+
+/// Says in which time the motion would be within the limits that depend on it, where it is not.
+fn would_do(plan: &Plan) -> Option<String> {
+    let duration = duration_within_limits(plan)?;
+    Some(format!("a duration of {duration} s would do for velocities, accelerations and jerks"))
+}
+
+/// A duration, to three digits, in which limits of velocity, acceleration and jerk would be kept, where they are not.
+pub(super) fn duration_within_limits(plan: &Plan) -> Option<String> {
+    let depends = |arm: &ArmPlan| arm.violations.iter().any(|v| v.kind != LimitKind::Position);
+    // What scaling does not see, such as feedback, gets half a percent.
+    let least = 1.005 * plan.feasible_duration().filter(|_| plan.arms.iter().any(depends))?;
+    let decimals = 2 - least.log10().floor() as i32;
+    let unit = 10_f64.powi(-decimals);
+    let rounded = (least.max(1.005 * plan.duration()) / unit).ceil() * unit;
+    Some(number_text(format!("{rounded:.*}", decimals.max(0) as usize).parse().unwrap_or(rounded)))
 }
 
 fn violations(arms: &[ArmPlan]) -> Table {

@@ -238,8 +238,12 @@ impl ScenarioStudy {
             self.plan(&scenario)
         };
         let finest = self.ladder.sigmas().last().copied().unwrap_or(self.ladder.duration());
+        let mut less_smooth = None;
         let mut report = match exact(finest) {
-            Ok(_) => study.of_planner_against(planner, exact)?,
+            Ok(reference) => {
+                less_smooth = reference.smoothness().filter(|&smooth| smooth < row.order());
+                study.of_planner_against(planner, exact)?
+            }
             Err(refusal) => {
                 let mut report = study.of_planner(planner)?;
                 report.notes.push(format!("the joints are not studied: {refusal}"));
@@ -248,6 +252,12 @@ impl ScenarioStudy {
         };
         report.notes.splice(0..0, note.into_iter().chain(self.without_effect()));
         report.notes.extend(limit_of_doubles(row, &report));
+        report.notes.extend(less_smooth.map(|smooth| {
+            format!(
+                "the motion of the arms has {smooth} continuous derivatives only: errors fall like sigma^{} at best, which is not the row's doing",
+                smooth + 1
+            )
+        }));
         Ok(report)
     }
 

@@ -61,7 +61,7 @@ impl Peak {
 
 impl ArmPlan {
     /// The entries of one joint.
-    fn every<'a>(&self, entries: &'a [f64], joint: usize) -> impl Iterator<Item = f64> + 'a {
+    pub(super) fn every<'a>(&self, entries: &'a [f64], joint: usize) -> impl Iterator<Item = f64> + 'a {
         entries.iter().skip(joint).step_by(self.joints.len()).copied()
     }
 

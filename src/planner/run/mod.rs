@@ -13,6 +13,7 @@ mod plan;
 mod reachability;
 mod record;
 mod stop_criteria;
+mod time_scale;
 
 pub use closest_approach::ClosestApproach;
 pub use convergence::Convergence;

@@ -75,7 +75,7 @@ fn norm(error: &[f64]) -> f64 {
 }
 
 /// What one arm did.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ArmPlan {
     /// The arm's name.
     pub name: String,
@@ -111,6 +111,9 @@ pub struct ArmPlan {
     pub lost_directions: Vec<LostDirection>,
     /// Joint limits crossed, each where it was worst.
     pub violations: Vec<Violation>,
+    /// By what factor the duration of the motion along the path would have to change for the joints to come just to their limits
+    /// of velocity, acceleration and jerk; above one where they are crossed. `None` where no such limit is known.
+    pub time_scale: Option<f64>,
     /// How the feedback brought the arm in, where it was allowed to start off its path.
     pub convergence: Option<Convergence>,
     /// Where the initial joint positions were solved for: the distance [m, rad] of the tip from where it was asked to be.
@@ -179,6 +182,8 @@ pub struct Plan {
     pub steps: usize,
     /// How many of them lead arms to their paths before the run.
     pub lead: usize,
+    /// How many derivatives of the motions are continuous, if not all: errors fall like `sigma` to one power more at best.
+    pub smoothness: Option<usize>,
     /// The noise that was injected into the loop, if there was any.
     pub noise: Option<Noise>,
     /// What each arm did.

@@ -25,6 +25,8 @@ pub(in crate::planner) struct Description {
     pub(in crate::planner) watch: Option<DistanceWatch>,
     /// The factor by which the feedback shrinks errors per step, and the steps of the row.
     pub(in crate::planner) factor: (f64, usize),
+    /// How many derivatives of the motions are continuous, if not all.
+    pub(in crate::planner) smoothness: Option<usize>,
     pub(in crate::planner) warnings: Vec<String>,
 }
 
@@ -82,8 +84,19 @@ impl Record {
         arms: &[ArmRuntime],
         systems: impl Iterator<Item = &'a System>,
     ) -> Plan {
-        let Description { formula, sigma, h, start, steps, mut warnings, lead, watch, factor, .. } =
-            description;
+        let Description {
+            formula,
+            sigma,
+            h,
+            start,
+            steps,
+            mut warnings,
+            lead,
+            watch,
+            factor,
+            smoothness,
+            ..
+        } = description;
         let largest_criterion_rate = description.largest_criterion_rate;
         for (plan, runtime) in self.arms.iter_mut().zip(arms) {
             take_figures(plan, &runtime.monitor);
@@ -94,11 +107,12 @@ impl Record {
             }
             let chain = &runtime.arm.chain;
             plan.violations = runtime.monitor.violations(chain);
+            let limits = || chain.joints().iter().map(|joint| &joint.limits);
+            plan.time_scale = plan.scale_of_limits(limits(), sigma);
             if lead > 0 {
                 put_lead_before(plan, &runtime.arm, lead, sigma);
             }
-            let limits = chain.joints().iter().map(|joint| &joint.limits);
-            plan.violations.extend(plan.crossed_by_differences(limits, sigma));
+            plan.violations.extend(plan.crossed_by_differences(limits(), sigma));
             warnings.extend(return_warning(plan, runtime));
             warnings.extend(damping_warning(plan, runtime.threshold));
             warnings.extend(rate_warning(&plan.name, runtime.monitor.largest_rate, largest_criterion_rate));
@@ -135,6 +149,7 @@ impl Record {
             start,
             steps,
             lead,
+            smoothness,
             noise,
             arms,
             tasks,
@@ -278,18 +293,8 @@ fn empty_plan(runtime: &ArmRuntime, steps: usize) -> ArmPlan {
         positions: Vec::with_capacity(entries),
         velocities: Vec::with_capacity(entries),
         errors: Vec::with_capacity(steps + 1),
-        max_error: 0.0,
-        max_error_component: 0.0,
-        max_error_steady: 0.0,
-        rms_error_steady: 0.0,
-        max_position_error: 0.0,
-        max_orientation_error: 0.0,
         smallest_singular_value: (f64::INFINITY, 0.0),
-        damped_samples: 0,
-        lost_directions: Vec::new(),
-        violations: Vec::new(),
-        worst_singular_value: None,
-        convergence: None,
         start_distance: runtime.arm.start_distance,
+        ..ArmPlan::default()
     }
 }

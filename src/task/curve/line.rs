@@ -27,7 +27,8 @@ pub(super) const KIND: CurveKind = Kind::new(
 )
 .with_objection(|given| {
     let ends = ["to", "displacement"].into_iter().filter(|name| given.get(name).is_some()).count();
-    (ends != 1).then_some("a line ends at one of `to` (world) and `displacement` (from the tip); give one")
+    (ends != 1)
+        .then(|| "a line ends at one of `to` (world) and `displacement` (from the tip); give one".to_owned())
 })
 .with_draw(|size, whole| {
     let direction = [(); 3].map(|()| f64::from(whole(-10, 10)) * size);

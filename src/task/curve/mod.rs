@@ -7,7 +7,9 @@ mod fourier;
 mod line;
 mod lissajous;
 mod planar_curve;
+mod polyline;
 mod rose;
+mod spline;
 mod tricuspid;
 
 pub use astroid::Astroid;
@@ -17,12 +19,23 @@ pub use fourier::Fourier;
 pub use line::Line;
 pub use lissajous::Lissajous;
 pub use planar_curve::PlanarCurve;
+pub use polyline::Polyline;
 pub use rose::Rose;
+pub use spline::Spline;
 pub use tricuspid::Tricuspid;
 
 /// Every built-in curve.
-pub const CURVES: &[CurveKind] =
-    &[circle::KIND, tricuspid::KIND, astroid::KIND, line::KIND, lissajous::KIND, rose::KIND, fourier::KIND];
+pub const CURVES: &[CurveKind] = &[
+    circle::KIND,
+    tricuspid::KIND,
+    astroid::KIND,
+    line::KIND,
+    lissajous::KIND,
+    rose::KIND,
+    fourier::KIND,
+    spline::KIND,
+    polyline::KIND,
+];
 
 #[cfg(test)]
 mod tests {
@@ -41,7 +54,12 @@ mod tests {
                 MakeCurve::Planar(make) => {
                     (kind.name, Box::new(Planar::whole(make(&given))) as Box<dyn Path>, true)
                 }
-                MakeCurve::Centered(make) => (kind.name, make(&given), true),
+                MakeCurve::Centered(make) => {
+                    // Paths through waypoints end at the last of them.
+                    let path = make(&given);
+                    let closes = path.smoothness().is_none();
+                    (kind.name, path, closes)
+                }
                 MakeCurve::FromTip(make) => (kind.name, make(&given, &Vector3::new(0.1, 0.2, 0.3)), false),
             })
         };

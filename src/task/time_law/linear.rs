@@ -11,7 +11,7 @@ impl TimeLaw for Linear {
     }
 }
 
-pub(super) const KIND: TimeLawKind = Kind::new("linear", "t / T.", &[], || Box::new(Linear));
+pub(super) const KIND: TimeLawKind = Kind::new("linear", "t / T.", &[], |_| Box::new(Linear));
 
 #[cfg(test)]
 mod tests {

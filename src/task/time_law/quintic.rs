@@ -17,7 +17,7 @@ pub(super) const KIND: TimeLawKind = Kind::new(
     "quintic",
     "The polynomial of degree 5 with velocity and acceleration zero at both ends.",
     &[],
-    || Box::new(Quintic),
+    |_| Box::new(Quintic),
 );
 
 #[cfg(test)]

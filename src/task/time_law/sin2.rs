@@ -14,7 +14,7 @@ impl TimeLaw for Sin2 {
 }
 
 pub(super) const KIND: TimeLawKind =
-    Kind::new("sin2", "sin^2(pi t / 2T): at rest at both ends.", &[], || Box::new(Sin2));
+    Kind::new("sin2", "sin^2(pi t / 2T): at rest at both ends.", &[], |_| Box::new(Sin2));
 
 #[cfg(test)]
 mod tests {

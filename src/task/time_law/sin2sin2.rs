@@ -17,7 +17,7 @@ pub(super) const KIND: TimeLawKind = Kind::new(
     "sin2sin2",
     "sin^2((pi/2) sin^2(pi t / 2T)): velocity, acceleration and jerk vanish at both ends.",
     &[],
-    || Box::new(Sin2Sin2),
+    |_| Box::new(Sin2Sin2),
 );
 
 #[cfg(test)]

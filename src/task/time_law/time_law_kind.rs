@@ -1,5 +1,8 @@
 use super::TimeLaw;
-use crate::kind::Kind;
+use crate::kind::{Kind, Parameters};
 
-/// A time law that files can name; it takes no parameters.
-pub type TimeLawKind = Kind<fn() -> Box<dyn TimeLaw>>;
+/// Makes a time law of its parameters.
+pub type MakeTimeLaw = fn(&Parameters) -> Box<dyn TimeLaw>;
+
+/// A time law that files can name.
+pub type TimeLawKind = Kind<MakeTimeLaw>;

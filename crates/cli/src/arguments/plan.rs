@@ -9,6 +9,7 @@ use kinstep_files::scenario::suggestion;
 use kinstep_files::trajectory::{ColumnMap, Interpolation, KnownJoint, ReadOptions, TimeUnit};
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "they are switches of a command")]
 pub(crate) struct PlanArguments {
     /// The scenario, a TOML file (`kinstep schema scenario` has its keys)
     pub(crate) scenario: Option<PathBuf>,
@@ -31,6 +32,10 @@ pub(crate) struct PlanArguments {
     /// Draw the plan too, into the folder figures of --out: a picture a file, its numbers beside it as CSV
     #[arg(long, requires = "out")]
     pub(crate) figures: bool,
+
+    /// Take the least duration that keeps the joints' limits of velocity, acceleration and jerk, in place of the scenario's
+    #[arg(long)]
+    pub(crate) fastest: bool,
 
     /// Lay a value over the scenario; arms by name. May be given again
     #[arg(long, value_name = "KEY.PATH=VALUE")]

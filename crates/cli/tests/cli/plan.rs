@@ -91,8 +91,11 @@ fn the_margin_is_kept_by_the_law_that_knows_of_it_and_not_by_the_other() {
     let direct = kinstep(&[&blind[..], &["--json"]].concat()).expect(1).json();
     assert!(number(&direct["distance"]["minimum"]) < 0.0, "{}", direct["distance"]);
     assert_eq!(direct["distance"]["pair"], serde_json::json!(["arm panda_link6", "ball"]));
-    let said = kinstep(&blind).expect(1).out;
-    assert!(said.contains("between arm panda_link6 and ball (margin 0.02 m, not kept), at t = 3.2"), "{said}");
+    let said = kinstep(&blind).expect(1).stdout();
+    assert!(
+        said.contains("between arm panda_link6 and ball (margin 0.02 m, not kept), at t = 3.2"),
+        "{said}"
+    );
     let plain = kinstep(&["plan", "examples/planar_dual.toml", "--json"]).expect(0).json();
     assert!(plain["distance"].is_null());
 }
@@ -208,6 +211,45 @@ fn a_crossed_limit_is_exit_1_with_the_joint_the_time_and_the_limit() {
         .expect("a longer duration is advised");
     let longer = format!("duration={}", advice.split_whitespace().next().unwrap());
     kinstep(&["plan", "--set", &longer]).expect(0);
+}
+
+#[test]
+fn a_duration_that_would_do_is_told_and_the_least_one_is_found() {
+    let hurried = ["plan", "--set", "duration=1"];
+    let text = kinstep(&hurried).expect(1).out;
+    assert!(text.contains("a duration of 1.02 s would do for velocities"), "{text}");
+    let plan = kinstep(&[&hurried[..], &["--json"]].concat()).expect(1).json();
+    let left = &plan["arms"][0]["limits"];
+    let would_do = number(&left["feasible_duration"]);
+    let crossed = &left["violations"][0];
+    let excess = number(&crossed["value"]) / number(&crossed["limit"]);
+    assert!((would_do - excess * number(&plan["duration"])).abs() < 1e-12 && would_do > 1.0);
+    assert_eq!(plan["feasible_duration"], left["feasible_duration"]);
+
+    let desk = Desk::new(&[]);
+    let run = desk.run(&["plan", "--fastest", "--out", "fast"]).expect(0);
+    assert!(
+        run.out.contains("The least duration within the joints' limits of motion is 1.02 s"),
+        "{}",
+        run.out
+    );
+    let written = std::fs::read_to_string(desk.path("fast/scenario.toml")).unwrap();
+    assert!(written.contains("duration = 1.02\n"), "{written}");
+    let again = desk.run(&["plan", "fast/scenario.toml", "--json"]).expect(0).json();
+    assert!(number(&again["feasible_duration"]) <= 1.02 && number(&again["feasible_duration"]) > 1.01);
+    kinstep(&["plan", "--set", "duration=1.01"]).expect(1);
+}
+
+#[test]
+fn times_of_waypoints_that_are_stretched_are_told() {
+    let table = "t,x,y\n0,0,0\n1,0.05,0\n2,0.05,0.05\n4,0,0.05\n";
+    let path = "path = { kind = \"spline\", file = \"way.csv\" }\n";
+    let begin = SMALL.find("path =").or_else(|| SMALL.find("[arm.path]")).unwrap();
+    let text = format!("{}{path}", &SMALL[..begin]);
+    let desk = Desk::new(&[("s.toml", &text), ("way.csv", table)]);
+    let said = |set: &[&str]| desk.run(&[&["plan", "s.toml"], set].concat()).expect(0).out;
+    assert!(said(&["--set", "duration=8"]).contains("take 4 s by their times and 8 s by `duration`"));
+    assert!(!said(&["--set", "duration=4"]).contains("by their times"));
 }
 
 #[test]

@@ -15,12 +15,13 @@ use super::noise_spec::NoiseSpec;
 use super::path_spec::PathSpec;
 use super::robots::RobotSource;
 use super::start_pose::StartPose;
+use super::time_law_spec::TimeLawSpec;
 use kinstep::formula::{Duty, Formula, FormulaTable};
 use kinstep::integrate::Starter;
 use kinstep::kind::Real;
 use kinstep::planner::{Arm, JointSystem, Planner, PlannerBuilder, PlannerError, joint_sets};
 use kinstep::robot::{Chain, ChainError, ChainJoint, PositionsError, Robot, UrdfOptions};
-use kinstep::task::{self, Leaning, MakeCurve, Motion, Planar, Turning};
+use kinstep::task::{self, Leaning, Linear, MakeCurve, Motion, Planar, TimeLaw, Turning};
 
 impl Scenario {
     /// Returns a planner for the scenario with a row of `table`; robot files are looked for from `folder`, the place
@@ -43,7 +44,8 @@ impl Scenario {
         table: &FormulaTable,
         folder: Option<&Path>,
     ) -> Result<Planner, ScenarioError> {
-        self.read_and_checked(kinds)?.planner_of_checked(kinds, table, folder)
+        let read = self.read_and_checked(kinds)?.with_waypoints_read(kinds, folder)?;
+        read.planner_of_checked(kinds, table, folder)
     }
 
     fn planner_of_checked(
@@ -114,7 +116,7 @@ impl Scenario {
     /// # Errors
     /// As [`Scenario::planner`].
     pub fn arms_with(&self, kinds: &Kinds, folder: Option<&Path>) -> Result<Vec<Arm>, ScenarioError> {
-        let read = self.read_and_checked(kinds)?;
+        let read = self.read_and_checked(kinds)?.with_waypoints_read(kinds, folder)?;
         read.on_machines(read.build_arms(kinds, folder).into_iter().collect::<Result<_, _>>()?)
     }
 
@@ -424,25 +426,32 @@ fn value_or(number: Option<&Real>, default: f64) -> f64 {
 
 impl PathSpec {
     /// Returns the motion along the path of a tip that stands at `start`, in so many seconds; nothing where its curve or
-    /// its time law is not built in.
+    /// its time law is not built in, or its waypoints stand in a file, which only [`Scenario::planner`] and
+    /// [`Scenario::arms`] read.
     pub fn motion(&self, start: &IsometryMatrix3<f64>, duration: f64) -> Option<Motion> {
         self.motion_with(&Kinds::builtin(), start, duration)
     }
 
     /// As [`PathSpec::motion`], with kinds of the program's own beside the built-in ones.
     pub fn motion_with(&self, kinds: &Kinds, start: &IsometryMatrix3<f64>, duration: f64) -> Option<Motion> {
-        let time_law = match &self.time_law {
-            Some(name) => kinds.time_laws.get(name)?,
-            None => kinds.time_laws.iter().next()?,
+        if self.awaits_file() {
+            return None;
+        }
+        let path = self.path(kinds, start)?;
+        let time_law: Box<dyn TimeLaw> = match &self.time_law {
+            Some(law) => law.law(kinds)?,
+            // Waypoints with times say themselves how time runs.
+            None if self.parameters.get("times").is_some() => Box::new(Linear),
+            None => TimeLawSpec::new(kinds.time_laws.iter().next()?.name).law(kinds)?,
         };
-        let (path, time_law) = (self.path(kinds, start)?, (time_law.make)());
         Some(match &self.center {
             Some(center) => {
                 let mut place = vector(center);
                 if center.len() == 2 {
                     place.z = start.translation.z;
                 }
-                Motion::centered(path, time_law, duration, place, start.rotation)
+                let initial = path.initial_orientation().unwrap_or(start.rotation);
+                Motion::centered(path, time_law, duration, place, initial)
             }
             None => Motion::from_pose(path, time_law, duration, start),
         })

@@ -16,7 +16,7 @@ use kinstep::planner::{MAX_SAMPLE_BYTES, sample_bytes};
 use kinstep::task::TaskKind;
 
 /// Largest length [m], angle [rad] or other number of an arm that is believed.
-const MAX_SIZE: f64 = 1e6;
+pub(super) const MAX_SIZE: f64 = 1e6;
 
 pub(super) fn refuse(path: &KeyPath, problem: impl std::fmt::Display) -> ScenarioError {
     ScenarioError::at(ErrorKind::Scenario, path, problem)

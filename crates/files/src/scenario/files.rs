@@ -64,6 +64,10 @@ impl Scenario {
                 let path = find(named, folder).ok_or_else(|| missing(named, folder))?;
                 arm.calibration = Some(reference(&path, into)?);
             }
+            if let Some(named) = arm.path.parameters.text("file").map(str::to_owned) {
+                let path = find(&named, folder).ok_or_else(|| missing(&named, folder))?;
+                arm.path.parameters.set("file", reference(&path, into)?.as_str());
+            }
             if let Some(named) = &arm.limits {
                 let path = find(named, folder).ok_or_else(|| missing(named, folder))?;
                 arm.limits = Some(reference(&path, into)?);

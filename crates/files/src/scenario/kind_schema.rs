@@ -7,11 +7,18 @@ use super::kinds::Kinds;
 use super::law_spec::ACCELERATION_LIMIT;
 use kinstep::kind::{Form, Parameter, Registry};
 
-/// Puts the curves and their parameters, and the time laws, into the schema of a path.
+/// Puts the curves and their parameters into the schema of a path.
 pub(super) fn curves(schema: &mut Schema) {
+    extend(schema, &Kinds::builtin().curves);
+}
+
+/// The time laws with their parameters: a name, or a table.
+pub(super) fn time_laws() -> Schema {
     let kinds = Kinds::builtin();
-    extend(schema, &kinds.curves);
-    set(schema, "time_law", |described| names(&kinds.time_laws, described));
+    let word = names(&kinds.time_laws, "");
+    let mut table = schemars::json_schema!({ "type": "object", "required": ["kind"] });
+    extend(&mut table, &kinds.time_laws);
+    schemars::json_schema!({ "anyOf": [word, table] })
 }
 
 /// Puts the laws and their parameters into the schema of `[law]`.
@@ -82,6 +89,7 @@ fn form(parameter: &Parameter) -> Value {
         Form::Pair => of_length(real, 2, 2),
         Form::Point => of_length(real, 2, 3),
         Form::Vectors => list(of_length(real, 3, 3)),
+        Form::Quaternions => list(of_length(real, 4, 4)),
         Form::Text => json!({ "type": "string" }),
         Form::OneOf(words) => json!({ "type": "string", "enum": words }),
         Form::ByJoint { .. } => {

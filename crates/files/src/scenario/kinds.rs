@@ -5,7 +5,7 @@ use kinstep::collision::{MakeObstacle, OBSTACLES, ObstacleKind};
 use kinstep::kind::Registry;
 use kinstep::law::{CRITERIA, CriterionKind, LAWS, LawKind, MakeCriterion, MakeLaw};
 use kinstep::task::{
-    AddedTaskKind, CURVES, CurveKind, MakeCurve, MakeTask, TASKS, TIME_LAWS, TimeLaw, TimeLawKind,
+    AddedTaskKind, CURVES, CurveKind, MakeCurve, MakeTask, MakeTimeLaw, TASKS, TIME_LAWS, TimeLawKind,
 };
 
 /// The curves, time laws, laws, null-space criteria, tasks and obstacles that a scenario can name: the built-in ones, and those that a
@@ -48,7 +48,7 @@ pub struct Kinds {
     /// Curves.
     pub curves: Registry<MakeCurve>,
     /// Time laws.
-    pub time_laws: Registry<fn() -> Box<dyn TimeLaw>>,
+    pub time_laws: Registry<MakeTimeLaw>,
     /// Laws.
     pub laws: Registry<MakeLaw>,
     /// Null-space criteria.
@@ -125,7 +125,9 @@ impl Kinds {
         let keys: Vec<&str> = path.steps().iter().filter_map(Step::as_key).collect();
         match keys.as_slice() {
             ["arm", .., "path", "kind"] => Some(self.curves.names()),
-            ["arm", .., "path", "time_law"] => Some(self.time_laws.names()),
+            ["arm", .., "path", "time_law"] | ["arm", .., "path", "time_law", "kind"] => {
+                Some(self.time_laws.names())
+            }
             ["law", "kind"] => Some(self.laws.names()),
             ["law", "criterion", "kind"] => Some(self.criteria.names()),
             ["task", .., "kind"] => Some(self.tasks.names()),

@@ -11,6 +11,7 @@ mod criterion_spec;
 mod document;
 mod error;
 mod exactly;
+mod fastest;
 mod files;
 mod formulas;
 mod key_path;
@@ -33,12 +34,15 @@ pub mod suite;
 mod task_spec;
 #[cfg(test)]
 mod tests;
+mod time_law_spec;
+mod waypoint_file;
 
 pub use approach::Approach;
 pub use collision_spec::{CollisionSpec, ObstacleSpec};
 pub use criterion_spec::CriterionSpec;
 pub use document::{ScenarioText, read_text};
 pub use error::{ErrorKind, Place, ScenarioError, suggestion};
+pub use fastest::Fastest;
 pub use formulas::{FormulaRows, row_refusals};
 pub use key_path::{KeyPath, Step};
 pub use kinds::Kinds;
@@ -56,3 +60,4 @@ pub use robots::RobotSource;
 pub use start_pose::{OnPath, StartPose, TipPose};
 pub use study_spec::{MeasureKind, Precision, ProblemSpec, StudySpec};
 pub use task_spec::TaskSpec;
+pub use time_law_spec::TimeLawSpec;

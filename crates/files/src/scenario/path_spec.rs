@@ -2,11 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::check::require;
 use super::error::ScenarioError;
 use super::exactly::exactly;
 use super::key_path::KeyPath;
-use super::kind_reader::{KindTable, Misread, named};
+use super::kind_reader::{KindTable, Misread};
 use super::kinds::Kinds;
+use super::time_law_spec::TimeLawSpec;
 use kinstep::kind::{Parameters, Real, Value};
 use kinstep::task::{MakeCurve, Plane, TaskKind};
 
@@ -47,7 +49,7 @@ pub struct PathSpec {
     pub center: Option<Vec<Real>>,
     /// How the path is travelled in time. Default: sin2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub time_law: Option<String>,
+    pub time_law: Option<TimeLawSpec>,
     /// Turn of the tip in the course of a path of task `pose`. Default: the orientation is held.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turn: Option<TurnSpec>,
@@ -104,14 +106,9 @@ impl PathSpec {
         let mut misread: Vec<Misread> =
             self.table(at, kinds).read(&mut parameters).err().into_iter().collect();
         self.parameters = parameters;
-        let of_value = |error| Misread { error, is_of_key: false };
-        misread.extend(self.check_time_law(at, kinds).err().map(of_value));
+        let time_law = self.time_law.as_mut().map(|law| law.read(&at.key("time_law"), kinds));
+        misread.extend(time_law.and_then(Result::err));
         misread
-    }
-
-    fn check_time_law(&self, at: &KeyPath, kinds: &Kinds) -> Result<(), ScenarioError> {
-        let Some(name) = &self.time_law else { return Ok(()) };
-        named(&kinds.time_laws, &at.key("time_law"), name).map(|_| ())
     }
 
     /// Checks that the curve has the parameters of its kind and no others.
@@ -121,14 +118,17 @@ impl PathSpec {
         kinds: &Kinds,
         task: TaskKind,
     ) -> Result<(), ScenarioError> {
-        self.check_time_law(at, kinds)?;
+        self.time_law.as_ref().map_or(Ok(()), |law| law.check(&at.key("time_law"), kinds))?;
         let table = self.table(at, kinds);
         let (before, after): (&[&str], &[&str]) = match table.named()?.make {
             MakeCurve::Planar(_) => (&KEYS[..5], &KEYS[5..]),
             MakeCurve::Centered(_) => (&[], &KEYS[4..]),
             MakeCurve::FromTip(_) => (&[], &KEYS[5..]),
         };
-        table.check(&self.parameters, (before, after, &self.given()), task == TaskKind::PositionXy)
+        table.check(&self.parameters, (before, after, &self.given()), task == TaskKind::PositionXy)?;
+        require(!self.has_orientations() || self.turn.is_none(), &at.key("turn"), || {
+            "the waypoints say how the tip is turned; take this away, or their orientations".to_owned()
+        })
     }
 
     /// Returns every length and angle that lays the curve, by its key and, in a list, its place there.

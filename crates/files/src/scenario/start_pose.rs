@@ -89,14 +89,16 @@ impl StartPose {
     /// What the arm's tip is asked to reach, in world axes.
     fn target(&self, arm: &ArmSpec, kinds: &Kinds, duration: f64) -> Target {
         let (xyz, rpy) = self.parts();
-        let place = match xyz {
-            Some(xyz) => vector(xyz),
-            // The path has been checked to have a centre, so that where the tip stands does not matter.
-            None => arm
-                .path
-                .motion_with(kinds, &IsometryMatrix3::identity(), duration)
-                .map_or_else(Vector3::zeros, |motion| motion.at(0.0).position),
+        // A path without a place of its own has been refused, so that where the tip stands does not matter.
+        let motion = arm.path.motion_with(kinds, &IsometryMatrix3::identity(), duration);
+        let beginning = motion.map(|motion| motion.at(0.0));
+        let place = match (xyz, &beginning) {
+            (Some(xyz), _) => vector(xyz),
+            (None, beginning) => beginning.map_or_else(Vector3::zeros, |beginning| beginning.position),
         };
+        if let (None, TaskKind::Pose, Some(beginning)) = (rpy, arm.task, &beginning) {
+            return Target::of_task(TaskKind::Pose, beginning);
+        }
         let is_planar = xyz.or(arm.path.center.as_deref()).is_some_and(|given| given.len() == 2);
         match rpy {
             Some(rpy) => {
@@ -156,7 +158,10 @@ fn place(p: &Vector3<f64>) -> String {
 /// Whether a start on the path makes sense: the sentence against it, if not.
 pub(super) fn objection(arm: &ArmSpec, start: &StartPose) -> Option<String> {
     let (xyz, rpy) = start.parts();
-    if rpy.is_none() && arm.task == TaskKind::Pose {
+    // Waypoints may say how the tip is turned, which is known once they are read.
+    let path = &arm.path;
+    let is_turned = xyz.is_none() && path.center.is_some() && (path.has_orientations() || path.awaits_file());
+    if rpy.is_none() && arm.task == TaskKind::Pose && !is_turned {
         return Some("the task \"pose\" needs to know how the tip is turned: give rpy".to_owned());
     }
     if xyz.is_none() && arm.path.center.is_none() {

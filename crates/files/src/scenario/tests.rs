@@ -243,7 +243,7 @@ fn a_value_of_the_wrong_type_is_told_what_to_write_in_words() {
         ("arm.left.path.plane=[0,0,1]", "one of xy, yz, zx, yx, zy, xz"),
         ("arm.left.path.plane=3", "one of xy, yz, zx, yx, zy, xz"),
         ("arm.left.path.kind=3", "one of circle, tricuspid, astroid, line, lissajous, rose, fourier"),
-        ("arm.left.path.time_law=[1]", "one of sin2, sin2sin2, linear, quintic"),
+        ("arm.left.path.time_law=[1]", "one of sin2, sin2sin2, linear, quintic, trapezoid, s-curve"),
         ("arm.left.task=1", "one of position-xy, position, pose"),
         ("start=1", "one of paper, ramp, rk4, rk8"),
         ("law.kind=1", "one of pseudoinverse"),

@@ -53,6 +53,13 @@ impl Separator {
     }
 }
 
+impl Field<'_> {
+    /// The byte of the text at which it begins.
+    pub(crate) fn at(&self) -> usize {
+        self.at
+    }
+}
+
 impl<'t> Records<'t> {
     /// Begins at the first record of a text.
     pub fn new(text: &'t str) -> Self {

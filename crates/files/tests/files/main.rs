@@ -6,3 +6,4 @@ mod trajectories;
 mod trajectory_csv;
 mod trajectory_formats;
 mod trajectory_others;
+mod waypoints;

@@ -319,14 +319,14 @@ fn a_curve_and_a_time_law_of_ones_own_are_named_in_a_path() {
     let kinds =
         Kinds::builtin()
             .with_curve(HOOP)
-            .with_time_law(Kind::new("cubic", "t^2 (3 - 2 t).", &[], || Box::new(Cubic)));
+            .with_time_law(Kind::new("cubic", "t^2 (3 - 2 t).", &[], |_| Box::new(Cubic)));
     let own = ONE.replace("kind = \"circle\", radius = 0.1", "kind = \"hoop\", size = 0.05");
     let (plain, hooped) = (run(ONE, &kinds).unwrap(), run(&own, &kinds).unwrap());
     assert_eq!(last(&plain, 0), last(&hooped, 0));
     let cubic = run(&own.replace("sin2sin2", "cubic"), &kinds).unwrap();
     assert!(cubic.is_completed() && apart(&cubic.arms[0].positions[..], &plain.arms[0].positions[..]) > 1e-3);
     let message = refusal(&own.replace("\"hoop\"", "\"hop\""), &kinds);
-    assert!(message.ends_with("fourier, hoop; did you mean hoop?"), "{message}");
+    assert!(message.ends_with("spline, polyline, hoop; did you mean hoop?"), "{message}");
     let message = refusal(&own.replace("size = 0.05", "radius = 0.05"), &kinds);
     assert!(
         message.ends_with("it has plane, rotation, from, sweep, center, size, time_law, turn"),
@@ -335,7 +335,7 @@ fn a_curve_and_a_time_law_of_ones_own_are_named_in_a_path() {
     let message = refusal(&own.replace("sin2sin2", "cubik"), &kinds);
     assert_eq!(
         message,
-        "arm.left.path.time_law: \"cubik\" is not one of sin2, sin2sin2, linear, quintic, cubic; did you mean cubic?"
+        "arm.left.path.time_law: \"cubik\" is not one of sin2, sin2sin2, linear, quintic, trapezoid, s-curve, cubic; did you mean cubic?"
     );
     let message = refusal(&own, &Kinds::builtin());
     assert!(message.starts_with("arm.left.path.kind: \"hoop\" is not one of circle"), "{message}");

@@ -1,7 +1,7 @@
 //! Random paths as scenarios write them.
 
 use kinstep::task::TaskKind;
-use kinstep_files::scenario::{PathSpec, Real, TurnSpec};
+use kinstep_files::scenario::{PathSpec, Real, TimeLawSpec, TurnSpec};
 use kinstep_strategies::{PathCase, Shape, TimeLawCase};
 
 /// Returns a random path as a scenario writes it, for an arm whose task Jacobian has that smallest singular value at the start.
@@ -19,7 +19,7 @@ pub fn path_spec(
     if !matches!(case.shape, Shape::Fourier(_) | Shape::Line(_)) {
         spec.rotation = Some(f64::from(case.rotation).to_radians().into());
     }
-    spec.time_law = Some(time_law_name(law).to_owned());
+    spec.time_law = Some(TimeLawSpec::new(time_law_name(law)));
     let lean = case.lean_angle(smallest_singular_value);
     spec.turn = (task == TaskKind::Pose && lean > 0.0).then(|| TurnSpec {
         axis: PathCase::LEAN_AXIS.map(Real::from),

@@ -8,7 +8,7 @@ use kinstep::planner::{Arm, Feedback, Planner, PlannerError};
 use kinstep::robot::embedded;
 use kinstep::task::{Circle, Motion, Planar, Plane, Sin2, TaskKind, Tricuspid};
 use kinstep_files::scenario::{ScenarioError, ScenarioText};
-use kinstep_study::{Criteria, Ladder, OrderReport, OrderStudy, Orders};
+use kinstep_study::{Criteria, Ladder, OrderReport, OrderStudy, Orders, ScenarioStudy};
 use std::f64::consts::{PI, TAU};
 
 const DUAL_PANDA: &str = include_str!("../../../../examples/dual_panda.toml");
@@ -80,6 +80,56 @@ fn two_pandas_on_full_poses_show_order_four() {
     let report = study.of_planner(|sigma| scenario(DUAL_PANDA, sigma)).unwrap();
     assert_task(&report, 4);
     assert!(report.task_steady.unwrap().verdict.is_confirmed());
+}
+
+/// A Panda along a spline through poses, three times continuously differentiable.
+const SPLINE: &str = r#"
+sigma = 0.01
+duration = 4.0
+formula = "la6-wang-guo"
+start = "rk4"
+[law]
+h = 0.4
+[[arm]]
+name = "arm"
+robot = "panda"
+base = "panda_link0"
+tip = "panda_hand_tcp"
+task = "pose"
+q0 = [0.0, "-pi/4", 0.0, "-3*pi/4", 0.0, "pi/2", "pi/4"]
+[arm.path]
+kind = "spline"
+points = [[0, 0, 0], [0.1, 0.05, 0], [0.1, 0.15, -0.1], [0, 0.1, -0.1]]
+rpy = [[0, 0, 0], [0, 0.2, 0], [0, 0.2, 0.3], [0.1, 0, 0.3]]
+time_law = "sin2sin2"
+"#;
+
+#[test]
+fn a_formula_of_order_three_keeps_it_along_a_spline_through_poses() {
+    let study = strict(Ladder::halvings(4.0, 200, 5).unwrap(), Orders::at_fixed_step(3));
+    assert_task(&study.of_planner(|sigma| scenario(SPLINE, sigma)).unwrap(), 4);
+}
+
+#[test]
+fn a_study_says_that_a_motion_is_less_smooth_than_a_row() {
+    let read = |text: &str| ScenarioText::parse(text).unwrap().scenario().unwrap();
+    let notes = |text: &str, id: &str| {
+        let scenario = read(text);
+        let rows = scenario.formula_rows(None).unwrap();
+        let study = ScenarioStudy::new(&scenario, None, &rows, &[id.to_owned()]).unwrap();
+        study.run().unwrap().remove(0).report.notes
+    };
+    let said = |notes: Vec<String>| {
+        notes.iter().any(|note| note.contains("2 continuous derivatives only: errors fall like sigma^3"))
+    };
+    let planar = SPLINE
+        .replace("\"panda\"", "\"planar4\"")
+        .replace("panda_link0", "base")
+        .replace("panda_hand_tcp", "tip")
+        .replace("\"pose\"", "\"position-xy\"")
+        .replace("[0.0, \"-pi/4\", 0.0, \"-3*pi/4\", 0.0, \"pi/2\", \"pi/4\"]", "[0.3, 0.3, 0.3, 0.3]");
+    assert!(said(notes(&planar.replace("sin2sin2", "s-curve"), "la6-wang-guo")));
+    assert!(!said(notes(&planar, "la6-wang-guo")));
 }
 
 #[test]
