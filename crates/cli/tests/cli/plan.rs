@@ -91,7 +91,7 @@ fn the_margin_is_kept_by_the_law_that_knows_of_it_and_not_by_the_other() {
     let direct = kinstep(&[&blind[..], &["--json"]].concat()).expect(1).json();
     assert!(number(&direct["distance"]["minimum"]) < 0.0, "{}", direct["distance"]);
     assert_eq!(direct["distance"]["pair"], serde_json::json!(["arm panda_link6", "ball"]));
-    let said = kinstep(&blind).expect(1).stdout();
+    let said = kinstep(&blind).expect(1).out;
     assert!(
         said.contains("between arm panda_link6 and ball (margin 0.02 m, not kept), at t = 3.2"),
         "{said}"
