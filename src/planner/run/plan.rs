@@ -1,6 +1,5 @@
 use super::closest_approach::ClosestApproach;
 use super::convergence::Convergence;
-use super::lost_directions::LostDirection;
 use super::noise::Noise;
 use crate::planner::system::Violation;
 use crate::task::Component;
@@ -91,6 +90,20 @@ impl TaskPlan {
         };
         self.errors.chunks_exact(self.rows).map(norm).fold(0.0, f64::max)
     }
+}
+
+/// A direction of its task that an arm could move in too slowly to be asked for in full: its singular value lay below the law's
+/// threshold, where inverses are damped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LostDirection {
+    /// From when \[s\].
+    pub from: f64,
+    /// Until when \[s\]: the last sample at which it was lost.
+    pub to: f64,
+    /// The unit vector (linear; angular) in the axes of the task, where it was worst; its sign means nothing.
+    pub direction: Vector6<f64>,
+    /// The smallest singular value then.
+    pub smallest_singular_value: f64,
 }
 
 /// What one arm did.

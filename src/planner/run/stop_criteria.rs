@@ -166,7 +166,7 @@ pub(in crate::planner) fn infeasible(system: &System, infeasible: &Infeasible, t
     };
     let names = system.arm_names().join("`, `");
     let reason = format!(
-        "no joint velocity of `{names}` at t = {t:.6} s meets all that is asked for within what is allowed: {rows}; let the motion take longer, or ask for less"
+        "no joint velocity of `{names}` at t = {t:.6} s meets all that is asked for within what is allowed: {rows}; let the motion take longer, ask for less, or take a row of lower order (rows with large weights of both signs pass limits sooner)"
     );
     Stop { status: PlanStatus::Limit, reason }
 }
