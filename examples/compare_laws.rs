@@ -1,6 +1,6 @@
 //! Every law with every null-space criterion on one scenario, as the table of docs/laws.md.
 //!
-//! `cargo run --release --example compare_laws` takes examples/laws.toml, `-- FILE` another one.
+//! `cargo run --example compare_laws` takes examples/laws.toml, `-- FILE` another one.
 
 #![allow(clippy::print_stdout)]
 
@@ -24,8 +24,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => include_str!("laws.toml").to_owned(),
     };
     let scenario = ScenarioText::parse(&text)?.scenario()?;
-    println!("| law | criterion | largest error | drift | limits crossed | µs a step |");
-    println!("|---|---|--:|--:|--:|--:|");
+    println!("| law | criterion | largest error | drift | limits crossed | least distance | µs a step |");
+    println!("|---|---|--:|--:|--:|--:|--:|");
     for law in LAWS {
         for given in variants(law, &scenario) {
             for criterion in [None].into_iter().chain(CRITERIA.iter().map(Some)) {
@@ -94,12 +94,15 @@ fn row(
     ))
 }
 
-/// The largest error and drift of all arms and how many limits they crossed, or when the run stopped.
+/// The largest error and drift of all arms, how many limits they crossed and how near they came to something [m], or when the run
+/// stopped.
 fn outcome(plan: &Plan) -> String {
     if plan.status != PlanStatus::Completed {
-        return format!("stopped at {:.2} s: {} | | ", plan.time(plan.samples()), plan.status.name());
+        return format!("stopped at {:.2} s: {} | | | ", plan.time(plan.samples()), plan.status.name());
     }
     let most = |of: fn(&kinstep::planner::ArmPlan) -> f64| plan.arms.iter().map(of).fold(0.0, f64::max);
     let crossed: usize = plan.arms.iter().map(|arm| arm.violations.len()).sum();
-    format!("{:.1e} | {:.1e} | {crossed}", most(|arm| arm.max_error), most(|arm| arm.drift()))
+    let distance =
+        plan.distance.as_ref().map_or_else(|| "-".to_owned(), |near| format!("{:.3}", near.minimum));
+    format!("{:.1e} | {:.1e} | {crossed} | {distance}", most(|arm| arm.max_error), most(|arm| arm.drift()))
 }
