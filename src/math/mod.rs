@@ -48,7 +48,7 @@ pub use rational::{
 pub use rational_roots::rational_roots;
 pub use real_roots::{RealRoot, positive_roots, real_roots_between};
 pub use root_condition::{RootCondition, root_condition};
-pub use rotation::rotation_vector;
+pub use rotation::{rotation_vector, rotation_vector_rate};
 pub use routh::{is_schur, is_schur_within};
 pub use scalar::{Elementary, Scalar};
 pub use singular::{RowRotations, SingularValues};

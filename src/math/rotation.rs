@@ -1,7 +1,7 @@
 //! Rotations of space: the logarithm that orientation errors are made of.
 
 use super::lanes::Lanes;
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// Returns the rotation vector of `rotation` \[rad\]: `log(R)^vee`, of length at most pi.
 ///
@@ -23,6 +23,32 @@ pub fn rotation_vector(rotation: &Rotation3<f64>) -> Vector3<f64> {
         return half_turn_axis(rotation, &skew) * angle;
     }
     if sine == 0.0 { skew } else { skew * (angle / sine) }
+}
+
+/// Returns the matrix that takes the angular velocity of a rotation `R` (in the axes in which it turns) to the derivative of its
+/// rotation vector `phi = log(R)^vee`:
+///
+/// `d phi / dt = (I - [phi]/2 + (1 - (theta/2) cot(theta/2)) / theta^2 [phi]^2) omega`, `theta = |phi| < 2 pi`,
+///
+/// the inverse of the left Jacobian of the exponential (F. Bullo and R. Murray, 1995; T. Barfoot, *State Estimation for
+/// Robotics*, 2017, eq. 7.76).
+///
+/// ```
+/// use kinstep::math::rotation_vector_rate;
+/// use nalgebra::{Matrix3, Vector3};
+/// assert_eq!(rotation_vector_rate(&Vector3::zeros()), Matrix3::identity());
+/// ```
+pub fn rotation_vector_rate(phi: &Vector3<f64>) -> Matrix3<f64> {
+    let square = phi.norm_squared();
+    let factor = if square < 1e-2 {
+        // The series of the same: beyond these terms nothing is left at a tenth of a radian.
+        1.0 / 12.0 + square * (1.0 / 720.0 + square * (1.0 / 30240.0 + square * (1.0 / 1_209_600.0)))
+    } else {
+        let half = 0.5 * square.sqrt();
+        (1.0 - half / half.tan()) / square
+    };
+    let cross = phi.cross_matrix();
+    Matrix3::identity() - cross * 0.5 + cross * cross * factor
 }
 
 /// The sine times the axis and the cosine of the rotation `R D^T`, both given by their columns.
@@ -72,7 +98,7 @@ pub(crate) fn small_rotation_vector<V: Lanes>(sine: &[V; 3], cosine: V) -> Optio
 fn half_turn_axis(rotation: &Rotation3<f64>, skew: &Vector3<f64>) -> Vector3<f64> {
     let r = rotation.matrix();
     let cosine = (r.trace() - 1.0) * 0.5;
-    let symmetric = (r + r.transpose()) * 0.5 - nalgebra::Matrix3::identity() * cosine;
+    let symmetric = (r + r.transpose()) * 0.5 - Matrix3::identity() * cosine;
     let largest = (0..3).max_by(|&a, &b| symmetric[(a, a)].total_cmp(&symmetric[(b, b)])).unwrap_or(0);
     let axis: Vector3<f64> = symmetric.column(largest).normalize();
     if axis.dot(skew) < 0.0 { -axis } else { axis }
@@ -141,6 +167,20 @@ mod tests {
             let back = small(&(Rotation3::new(turn) * reference), &reference).unwrap();
             prop_assert!((Vector3::from(back) - turn).norm() < 4e-16, "{turn} {back:?}");
             prop_assert_eq!(small(&reference, &reference), Some([0.0; 3]));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_rate_of_a_rotation_vector_is_its_derivative(
+            axis in proptest::array::uniform3(-1.0..1.0_f64), angle in 0.0..3.1_f64,
+            omega in proptest::array::uniform3(-1.0..1.0_f64),
+        ) {
+            prop_assume!(Vector3::from(axis).norm() > 0.1);
+            let (phi, omega, step) = (Vector3::from(axis).normalize() * angle, Vector3::from(omega), 1e-6);
+            let turned = |by: f64| rotation_vector(&(Rotation3::new(omega * by) * Rotation3::new(phi)));
+            let difference = (turned(step) - turned(-step)) / (2.0 * step);
+            prop_assert!((difference - rotation_vector_rate(&phi) * omega).norm() < 1e-8);
         }
     }
 

@@ -4,7 +4,7 @@ use super::grid::grid;
 use super::planner::Planner;
 use super::resolve::resolved;
 use super::run::{Description, DistanceWatch, Evaluated, Noise, SynchronousField};
-use super::system::{Arm, ArmRuntime, JointIndex, JointSystem, Surroundings, System};
+use super::system::{Arm, ArmRuntime, Dependence, JointIndex, JointSystem, Surroundings, System};
 use crate::formula::Formula;
 use crate::integrate::{IntegrateError, Multistep, Starter};
 use crate::law::LinearityKind;
@@ -160,6 +160,7 @@ impl PlannerBuilder {
         let mut stepper = Multistep::new(formula, &starter, &field, 0.0, sigma, &initial)?;
         Evaluated::at_sample(&mut stepper, &mut field).scatter_to_arms();
         check_path_starts(&field)?;
+        check_independence(&mut field)?;
         let lead = lead_steps(&field, sigma);
         let converges = field.arms.iter().any(|runtime| runtime.arm.convergence.is_some());
         let factor = if converges { formula.spectral_radius(feedback.h) } else { 0.0 };
@@ -338,6 +339,37 @@ fn check_criteria(formula: &Formula, systems: &[System], sigma: f64) -> Result<f
     Ok(limit)
 }
 
+/// Where several tasks begin in a singular configuration: checks that they have any other.
+fn check_independence(field: &mut SynchronousField) -> Result<(), PlannerError> {
+    for system in &mut field.systems {
+        let is_singular = system.arms().any(|arm| field.arms[arm].is_singular());
+        if system.added_tasks().next().is_none() || !is_singular {
+            continue;
+        }
+        let found = system.dependence(&mut field.arms);
+        let said = |task: usize| match system.task_name(task) {
+            (name, Some(arm)) => format!("the task `{name}` of arm `{arm}`"),
+            (name, None) => format!("task `{name}`"),
+        };
+        match found {
+            None => {}
+            Some(Dependence::Tasks { others, .. }) if others.is_empty() => {}
+            Some(Dependence::Tasks { task, others }) => {
+                let others = others.into_iter().map(said).collect::<Vec<_>>().join(" with ");
+                let (name, arm) = system.task_name(task);
+                return Err(PlannerError::DependentTasks { task: said(task), others, arm, name });
+            }
+            Some(Dependence::Still { task, rows }) => {
+                let rows: Vec<&str> =
+                    rows.into_iter().map(|row| system.component(task, row).name()).collect();
+                let (name, arm) = system.task_name(task);
+                return Err(PlannerError::StillRows { task: said(task), rows: rows.join(", "), arm, name });
+            }
+        }
+    }
+    Ok(())
+}
+
 /// How many samples the longest lead of an arm takes.
 fn lead_steps(field: &SynchronousField, sigma: f64) -> usize {
     let longest = field.arms.iter().map(|runtime| runtime.arm.lead_duration()).fold(0.0, f64::max);
@@ -360,7 +392,7 @@ fn check_path_starts(field: &SynchronousField) -> Result<(), PlannerError> {
         for ((state, rows), _) in system.added_tasks() {
             let distance = rows.error_by_component(&*state.task).norm();
             if distance > PATH_START_TOLERANCE {
-                return Err(PlannerError::TaskStart { task: state.task.name().to_owned(), distance });
+                return Err(PlannerError::TaskStart { task: state.name.clone(), distance });
             }
         }
     }

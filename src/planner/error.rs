@@ -198,6 +198,40 @@ pub enum PlannerError {
         /// What is wrong with it.
         problem: String,
     },
+    /// An arm has no task of its own, and no other task is about it.
+    #[error(
+        "arm `{arm}` has no task of its own, and no task that it has together with others says what it does; give it one"
+    )]
+    NoTask {
+        /// The arm.
+        arm: String,
+    },
+    /// Tasks ask for the same motion, whatever the joint positions.
+    #[error(
+        "{task} asks for what {others} asks for already, so that no q0 is regular; leave one of them out, or mask rows of one"
+    )]
+    DependentTasks {
+        /// The task, with its arm where it is its own.
+        task: String,
+        /// Those that it depends on, in the same words.
+        others: String,
+        /// The arm whose own task it is.
+        arm: Option<String>,
+        /// The name of the task alone.
+        name: String,
+    },
+    /// No joint moves some rows of a task.
+    #[error("{task} asks for {rows}, which no joint of its arms moves; leave those rows out")]
+    StillRows {
+        /// The task, with its arm where it is its own.
+        task: String,
+        /// The rows.
+        rows: String,
+        /// The arm whose own task it is.
+        arm: Option<String>,
+        /// The name of the task alone.
+        name: String,
+    },
     /// A system has no arm.
     #[error("a system was asked for that names no arm; name those that are to be resolved together")]
     SystemWithoutArms,

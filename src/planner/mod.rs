@@ -29,4 +29,5 @@ pub use run::{
 };
 pub use system::{
     Arm, ArmState, DerivativeErrors, JointSystem, Surroundings, Violation, derivative_errors, joint_sets,
+    rows_at_start,
 };

@@ -19,11 +19,14 @@ pub(super) fn resolved(
     if surroundings.is_some() && laws.any(|law| law.as_ref().is_some_and(|law| law.keeps_distances())) {
         asked.push(JointSystem::of(arms.iter().map(Arm::name)));
     }
-    for arm in &arms {
-        check_task(&*arm.task, 1, 1.0)?;
+    let added = || asked.iter().flat_map(|system| &system.tasks);
+    for arm in arms.iter().filter(|arm| !arm.has_own_task()) {
+        if !added().any(|added| added.arms.contains(&arm.name)) {
+            return Err(PlannerError::NoTask { arm: arm.name.clone() });
+        }
     }
-    for added in asked.iter().flat_map(|system| &system.tasks) {
-        check_task(&*added.task, added.arms.len(), added.weight)?;
+    for added in added() {
+        check_task(&added.name, &*added.task, added.arms.len(), added.weight)?;
     }
     let ties: Vec<Vec<usize>> = asked.iter().map(|system| tie(system, &arms)).collect::<Result<_, _>>()?;
     let sets = joint_sets(&arms, &ties);
@@ -43,8 +46,8 @@ pub(super) fn resolved(
     Ok((runtimes, systems))
 }
 
-/// Checks what a task says of itself, and that it is given as many tips as it needs.
-fn check_task(task: &dyn Task, tips: usize, weight: f64) -> Result<(), PlannerError> {
+/// Checks what a task over tips says of itself, and that it is given as many tips as it needs.
+fn check_task(name: &str, task: &dyn Task, tips: usize, weight: f64) -> Result<(), PlannerError> {
     let problem = if task.rows() == 0 {
         "has no rows; it needs one at least".to_owned()
     } else if tips < task.least_tips() {
@@ -54,7 +57,7 @@ fn check_task(task: &dyn Task, tips: usize, weight: f64) -> Result<(), PlannerEr
     } else {
         return Ok(());
     };
-    Err(PlannerError::Task { task: task.name().to_owned(), problem })
+    Err(PlannerError::Task { task: name.to_owned(), problem })
 }
 
 /// The arms that are asked to be one system, by their indices.

@@ -83,7 +83,7 @@ pub(super) const KIND: AddedTaskKind = Kind::new(
             "Distance at the end, which is reached smoothly. Default: the one at the start.",
         ),
     ],
-    MakeTask { tips: 2, make: from_start },
+    MakeTask::of(2, from_start),
 )
 .with_draw(|size, _| Parameters::new().with("to", size));
 
@@ -118,7 +118,8 @@ mod tests {
 
     #[test]
     fn tips_that_start_at_one_point_have_no_distance() {
-        let start = TaskStart { tips: &poses(0.0), duration: 1.0 };
+        let tips = poses(0.0);
+        let start = TaskStart::new(&tips, 1.0);
         let refusal = from_start(&Parameters::new(), &start).err().unwrap();
         assert!(refusal.contains("start at one point"), "{refusal}");
     }

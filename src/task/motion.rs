@@ -1,4 +1,4 @@
-use super::{Path, TimeLaw};
+use super::{Hold, Linear, Path, TimeLaw};
 use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3, Vector6};
 use std::sync::Arc;
 
@@ -119,6 +119,27 @@ impl Motion {
         }
     }
 
+    /// The motion that stays at a pose.
+    pub fn held(pose: &IsometryMatrix3<f64>) -> Self {
+        Self::from_pose(Hold, Linear, 1.0, pose)
+    }
+
+    /// The progress along its path at time `t` \[s\] and its rate [1/s], if it has a path.
+    pub(super) fn progress(&self, t: f64) -> Option<(f64, f64)> {
+        match &self.course {
+            Course::Curve(curve) => Some(curve.progress(t)),
+            Course::Samples { .. } => None,
+        }
+    }
+
+    /// The tangent `d position / du` \[m\] of its path at progress `u`, if it has a path.
+    pub(super) fn tangent(&self, u: f64) -> Option<Vector3<f64>> {
+        match &self.course {
+            Course::Curve(curve) => Some(curve.path.point(u).tangent),
+            Course::Samples { .. } => None,
+        }
+    }
+
     /// The references that it was made of and their gap \[s\], if it was sampled beforehand.
     pub(crate) fn samples(&self) -> Option<(&Arc<[Reference]>, f64)> {
         match &self.course {
@@ -136,10 +157,15 @@ pub(crate) fn place_of_sample(t: f64, sigma: f64) -> Option<usize> {
 }
 
 impl Curve {
-    fn at(&self, t: f64) -> Reference {
+    /// The progress and its rate [1/s] at time `t` \[s\].
+    fn progress(&self, t: f64) -> (f64, f64) {
         let tau = t / self.duration;
-        let (u, mut rate) = self.time_law.progress(tau.clamp(0.0, 1.0));
-        rate = if (0.0..=1.0).contains(&tau) { rate / self.duration } else { 0.0 };
+        let (u, rate) = self.time_law.progress(tau.clamp(0.0, 1.0));
+        (u, if (0.0..=1.0).contains(&tau) { rate / self.duration } else { 0.0 })
+    }
+
+    fn at(&self, t: f64) -> Reference {
+        let (u, rate) = self.progress(t);
         let point = self.path.point(u);
         let (turn, spin) = self.path.turn(u);
         let (linear, angular) = (point.tangent * rate, spin * rate);

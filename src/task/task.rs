@@ -79,6 +79,10 @@ impl Task for Box<dyn Task> {
         (**self).rows()
     }
 
+    fn least_tips(&self) -> usize {
+        (**self).least_tips()
+    }
+
     fn evaluate(&self, at: &TaskInstant<'_>, out: &mut TaskRows) {
         (**self).evaluate(at, out);
     }
@@ -111,6 +115,19 @@ impl Component {
         Self::Angular(1),
         Self::Angular(2),
     ];
+
+    /// Their names in files, in the same order.
+    pub const NAMES: [&'static str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+
+    /// The component of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::NAMES.iter().position(|own| *own == name).map(|place| Self::ALL[place])
+    }
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self.place()]
+    }
 
     /// Its place in a 6-vector (linear; angular).
     pub fn place(self) -> usize {

@@ -225,10 +225,11 @@ fn a_thousand_steps_past_a_ball_allocate_nothing() {
     let chain = panda.chain("panda_link0", "panda_hand_tcp").unwrap();
     let q0 = vec![0.0, -0.6, 0.0, -2.2, 0.0, 1.6, 0.8];
     let pose = chain.forward(&q0, &mut chain.scratch()).pose();
-    let motion = || Motion::from_pose(Line { displacement: Vector3::new(0.0, 0.4, 0.0) }, Sin2, 2.0, &pose);
+    let line = || Line { displacement: Vector3::new(0.0, 0.4, 0.0) };
     for law in [QuadraticProgram::new(), QuadraticProgram::new().in_least_squares(1e-8)] {
         let law = law.with_criterion(Clearance::new(1.0));
-        let arm = Arm::new("arm", chain.clone(), q0.clone(), TaskKind::Position, motion()).with_law(law);
+        let motion = Motion::from_pose(line(), Sin2, 2.0, &pose);
+        let arm = Arm::new("arm", chain.clone(), q0.clone(), TaskKind::Position, motion).with_law(law);
         let ball = Capsule::sphere(Vector3::new(0.25, 0.25, 0.6), 0.08).unwrap();
         let model = CollisionModel::embedded("panda").unwrap();
         let around = Surroundings::new(0.02)

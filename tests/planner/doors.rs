@@ -260,9 +260,10 @@ impl Task for Height {
 }
 
 fn height(name: &str, side: f64, q0: &[f64]) -> Arm {
-    let arm = on_circle(name, planar(side), q0, 0.2);
-    let start = arm.chain().forward(q0, &mut arm.chain().scratch()).pose();
-    arm.with_task(Height(Motion::from_pose(Planar::whole(Circle { radius: 0.2 }), Quintic, DURATION, &start)))
+    let chain = planar(side);
+    let start = chain.forward(q0, &mut chain.scratch()).pose();
+    let motion = Motion::from_pose(Planar::whole(Circle { radius: 0.2 }), Quintic, DURATION, &start);
+    Arm::with_own_task(name, chain, q0.to_vec(), Box::new(Height(motion)))
 }
 
 fn distance_of(arms: &[Arm], swing: f64) -> Distance {

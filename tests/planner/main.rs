@@ -11,4 +11,5 @@ mod shared;
 mod side_by_side;
 mod stops;
 mod surroundings;
+mod tasks;
 mod waypoints;

@@ -36,7 +36,7 @@ struct Document<'a> {
     noise: Option<Noise>,
     arms: Vec<Arm<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    tasks: Vec<Task<'a>>,
+    relations: Vec<Relation<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     stacks: Vec<Stack<'a>>,
     shared: Vec<Shared<'a>>,
@@ -57,11 +57,14 @@ struct Noise {
 
 /// A task over the tips of several arms, beside their own.
 #[derive(Serialize)]
-struct Task<'a> {
+struct Relation<'a> {
     name: &'a str,
+    kind: &'a str,
     arms: &'a [String],
     rows: usize,
     max_error: f64,
+    max_position_error: f64,
+    max_orientation_error: f64,
 }
 
 /// Arms that were resolved as one system because they move joints in common.
@@ -91,6 +94,8 @@ struct Arm<'a> {
     rms_error_steady: f64,
     max_position_error: f64,
     max_orientation_error: f64,
+    /// By how much the joint that comes back least is away from its start at the end.
+    drift: f64,
     /// No sample on the path is below this.
     smallest_singular_value_at_least: f64,
     /// What it is at the sample where that bound was least; null where that is not known.
@@ -98,8 +103,6 @@ struct Arm<'a> {
     damped_samples: usize,
     /// The directions that the arm lost near singularities; nothing is known of arms that are resolved together.
     lost_directions: Vec<Lost>,
-    /// The largest distance of a joint at the end from where it started [rad or m].
-    drift: f64,
     limits: Limits<'a>,
     start_pose: Option<StartPose<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -187,7 +190,7 @@ impl<'a> Document<'a> {
             lead: Some(plan.lead).filter(|&lead| lead > 0),
             noise: plan.noise.as_ref().map(Noise::of),
             arms: plan.arms.iter().map(|arm| Arm::of(plan, arm)).collect(),
-            tasks: plan.tasks.iter().map(Task::of).collect(),
+            relations: plan.tasks.iter().map(Relation::of).collect(),
             stacks: plan.stacks.iter().map(Stack::of).collect(),
             shared: plan.shared.iter().map(|s| Shared { arms: &s.arms, joints: &s.joints }).collect(),
             distance: plan.distance.as_ref().map(Distance::of),
@@ -211,9 +214,17 @@ impl<'a> Distance<'a> {
     }
 }
 
-impl<'a> Task<'a> {
+impl<'a> Relation<'a> {
     fn of(task: &'a TaskPlan) -> Self {
-        Self { name: &task.name, arms: &task.arms, rows: task.rows, max_error: task.max_error() }
+        Self {
+            name: &task.name,
+            kind: &task.kind,
+            arms: &task.arms,
+            rows: task.rows,
+            max_error: task.max_error(),
+            max_position_error: task.max_position_error(),
+            max_orientation_error: task.max_orientation_error(),
+        }
     }
 }
 
@@ -241,11 +252,11 @@ impl<'a> Arm<'a> {
             rms_error_steady: arm.rms_error_steady,
             max_position_error: arm.max_position_error,
             max_orientation_error: arm.max_orientation_error,
+            drift: arm.drift(),
             smallest_singular_value_at_least: arm.smallest_singular_value.0,
             smallest_singular_value_at_most: arm.worst_singular_value,
             damped_samples: arm.damped_samples,
             lost_directions: arm.lost_directions.iter().map(Lost::of).collect(),
-            drift: arm.drift(),
             limits: Limits {
                 ok: arm.violations.is_empty(),
                 feasible_duration: arm

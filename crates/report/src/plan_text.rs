@@ -71,7 +71,12 @@ impl PlanFormat for PlanText {
 
 /// Says how well a task over the tips of several arms was kept.
 pub(super) fn kept_together(task: &TaskPlan) -> String {
-    format!("task {} of {}: max error {:.2e}", task.name, task.arms.join(" and "), task.max_error())
+    let errors = match (task.max_position_error(), task.max_orientation_error()) {
+        (position, 0.0) => format!("{position:.2e} m"),
+        (0.0, orientation) => format!("{orientation:.2e} rad"),
+        (position, orientation) => format!("{position:.2e} m, {orientation:.2e} rad"),
+    };
+    format!("{} of {}: max error {errors}", task.name, task.arms.join(" and "))
 }
 
 /// Says how near bodies came to each other.

@@ -1,22 +1,7 @@
 //! Which directions of its task an arm lost near singularities, where and how long.
 
-use super::plan::ArmPlan;
+use super::plan::{ArmPlan, LostDirection};
 use crate::planner::system::{ArmRuntime, Coupling};
-use nalgebra::Vector6;
-
-/// A direction of its task that an arm could move in too slowly to be asked for in full: its singular value lay below the law's
-/// threshold, where inverses are damped.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LostDirection {
-    /// From when \[s\].
-    pub from: f64,
-    /// Until when \[s\]: the last sample at which it was lost.
-    pub to: f64,
-    /// The unit vector (linear; angular) in the axes of the task, where it was worst; its sign means nothing.
-    pub direction: Vector6<f64>,
-    /// The smallest singular value then.
-    pub smallest_singular_value: f64,
-}
 
 /// The directions that an arm lost in a run of its own: one for each stretch of samples. Costs nothing where no sample was damped.
 /// Of arms that are resolved together it is not known which of them lost what.

@@ -18,9 +18,8 @@ mod time_scale;
 pub use closest_approach::ClosestApproach;
 pub use convergence::Convergence;
 pub use differences::Peak;
-pub use lost_directions::LostDirection;
 pub use noise::Noise;
-pub use plan::{ArmPlan, Plan, PlanStatus, SharedJoints, StackRank, Stop, TaskPlan};
+pub use plan::{ArmPlan, LostDirection, Plan, PlanStatus, SharedJoints, StackRank, Stop, TaskPlan};
 
 pub(super) use distance_watch::DistanceWatch;
 pub(super) use ensemble::Ensemble;

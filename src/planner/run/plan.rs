@@ -1,8 +1,8 @@
 use super::closest_approach::ClosestApproach;
 use super::convergence::Convergence;
-use super::lost_directions::LostDirection;
 use super::noise::Noise;
 use crate::planner::system::Violation;
+use crate::task::Component;
 use nalgebra::Vector6;
 
 /// How a run ended.
@@ -48,12 +48,16 @@ pub struct Stop {
 /// What became of a task beside those of the arms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaskPlan {
-    /// The task's name.
+    /// What it was called.
     pub name: String,
+    /// The kind of task.
+    pub kind: String,
     /// The arms whose tips it is about.
     pub arms: Vec<String>,
     /// How many rows it has.
     pub rows: usize,
+    /// What each of them measures.
+    pub components: Vec<Component>,
     /// The error of every row [m or rad], sample after sample.
     pub errors: Vec<f64>,
 }
@@ -66,12 +70,40 @@ impl TaskPlan {
 
     /// The largest norm of the error over the run.
     pub fn max_error(&self) -> f64 {
+        self.largest(|_| true)
+    }
+
+    /// The largest norm of the rows that are lengths \[m\].
+    pub fn max_position_error(&self) -> f64 {
+        self.largest(|component| !component.is_angular())
+    }
+
+    /// The largest norm of the rows that are angles \[rad\].
+    pub fn max_orientation_error(&self) -> f64 {
+        self.largest(Component::is_angular)
+    }
+
+    fn largest(&self, is_meant: impl Fn(Component) -> bool) -> f64 {
+        let norm = |errors: &[f64]| {
+            let rows = errors.iter().zip(&self.components).filter(|(_, component)| is_meant(**component));
+            rows.map(|(error, _)| error * error).sum::<f64>().sqrt()
+        };
         self.errors.chunks_exact(self.rows).map(norm).fold(0.0, f64::max)
     }
 }
 
-fn norm(error: &[f64]) -> f64 {
-    error.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
+/// A direction of its task that an arm could move in too slowly to be asked for in full: its singular value lay below the law's
+/// threshold, where inverses are damped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LostDirection {
+    /// From when \[s\].
+    pub from: f64,
+    /// Until when \[s\]: the last sample at which it was lost.
+    pub to: f64,
+    /// The unit vector (linear; angular) in the axes of the task, where it was worst; its sign means nothing.
+    pub direction: Vector6<f64>,
+    /// The smallest singular value then.
+    pub smallest_singular_value: f64,
 }
 
 /// What one arm did.
@@ -127,11 +159,15 @@ impl ArmPlan {
         &self.positions[n * joints..(n + 1) * joints]
     }
 
-    /// The largest distance [rad or m] of a joint at the end of the run from where it started.
+    /// By how much the joint that comes back least is away from its start [rad or m] at the last sample:
+    /// `max |q(T) - q(0)|`.
     pub fn drift(&self) -> f64 {
-        let last = self.positions.len().saturating_sub(self.joints.len());
-        let ends = self.positions.iter().zip(&self.positions[last..]);
-        ends.map(|(start, end)| (end - start).abs()).fold(0.0, f64::max)
+        let samples = self.positions.len() / self.joints.len().max(1);
+        if samples == 0 {
+            return 0.0;
+        }
+        let pairs = self.position(0).iter().zip(self.position(samples - 1));
+        pairs.map(|(first, last)| (last - first).abs()).fold(0.0, f64::max)
     }
 
     /// The joint velocities [rad/s or m/s] of sample `n`.

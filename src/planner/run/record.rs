@@ -45,9 +45,11 @@ impl Record {
     ) -> Self {
         let tasks = systems.flat_map(|system| {
             system.added_tasks().map(|((state, rows), _)| TaskPlan {
-                name: state.task.name().to_owned(),
+                name: state.name.clone(),
+                kind: state.task.name().to_owned(),
                 arms: system.arms_of(state).map(str::to_owned).collect(),
                 rows: rows.rows(),
+                components: (0..rows.rows()).map(|row| state.task.component(row)).collect(),
                 errors: Vec::with_capacity((steps + 1) * rows.rows()),
             })
         });

@@ -148,7 +148,7 @@ pub(in crate::planner) fn check_added_tasks(system: &System, arms: &[ArmRuntime]
         let names = system.arms_of(state).collect::<Vec<_>>().join("`, `");
         let reason = format!(
             "task `{}` of `{names}` was lost at t = {t:.6} s with an error of {:.3e}; {why}",
-            state.task.name(),
+            state.name,
             error.norm()
         );
         return Some(Stop { status, reason });
@@ -166,7 +166,7 @@ pub(in crate::planner) fn infeasible(system: &System, infeasible: &Infeasible, t
     };
     let names = system.arm_names().join("`, `");
     let reason = format!(
-        "no joint velocity of `{names}` at t = {t:.6} s meets all that is asked for within what is allowed: {rows}; let the motion take longer, or ask for less"
+        "no joint velocity of `{names}` at t = {t:.6} s meets all that is asked for within what is allowed: {rows}; let the motion take longer, ask for less, or take a row of lower order (rows with large weights of both signs pass limits sooner)"
     );
     Stop { status: PlanStatus::Limit, reason }
 }

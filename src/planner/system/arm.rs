@@ -32,11 +32,21 @@ impl Arm {
     ///
     /// The motion is given in world axes: mount the chain first ([`Chain::mounted`]).
     pub fn new(name: impl Into<String>, chain: Chain, q0: Vec<f64>, task: TaskKind, motion: Motion) -> Self {
+        Self::of(name.into(), chain, q0, Arc::new(Tracking { kind: task, motion }))
+    }
+
+    /// An arm called `name` that starts at the joint positions `q0` [rad or m] and does any task with its tip, by the least-norm
+    /// law. With [`Free`](crate::task::Free) it is left to the tasks that it has together with others.
+    pub fn with_own_task(name: impl Into<String>, chain: Chain, q0: Vec<f64>, task: Box<dyn Task>) -> Self {
+        Self::of(name.into(), chain, q0, task.into())
+    }
+
+    fn of(name: String, chain: Chain, q0: Vec<f64>, task: Arc<dyn Task>) -> Self {
         Self {
-            name: name.into(),
+            name,
             chain,
             q0,
-            task: Arc::new(Tracking { kind: task, motion }),
+            task,
             law: None,
             start_distance: None,
             machine: None,
@@ -49,13 +59,6 @@ impl Arm {
     #[must_use]
     pub fn with_law(mut self, law: impl Law + 'static) -> Self {
         self.law = Some(Box::new(law));
-        self
-    }
-
-    /// The same arm with another task for its tip, in place of the one that tracks a motion.
-    #[must_use]
-    pub fn with_task(mut self, task: impl Task + 'static) -> Self {
-        self.task = Arc::new(task);
         self
     }
 
@@ -185,6 +188,11 @@ impl Arm {
     /// The names of the joints it moves, in the order of their positions.
     pub(in crate::planner) fn joint_names(&self) -> Vec<String> {
         self.chain.joints().iter().map(|joint| joint.name.clone()).collect()
+    }
+
+    /// Whether it has a task of its own.
+    pub fn has_own_task(&self) -> bool {
+        self.task.rows() > 0
     }
 
     /// Takes the law that it was given, or the least-norm law.

@@ -63,6 +63,13 @@ pub fn derivative_errors(arms: &[Arm], task: &dyn Task, t: f64, step: f64) -> De
     }
 }
 
+/// The rows of a task over all the arms, in their order, at the joint positions at which they start and at time `t` \[s\]. The
+/// columns of its Jacobian are the joints of the arms one after the other.
+pub fn rows_at_start(arms: &[Arm], task: &dyn Task, t: f64) -> TaskRows {
+    let q: Vec<f64> = arms.iter().flat_map(|arm| arm.q0.clone()).collect();
+    rows_at(arms, task, t, &q)
+}
+
 fn rows_at(arms: &[Arm], task: &dyn Task, t: f64, q: &[f64]) -> TaskRows {
     let (mut tips, mut first) = (Vec::new(), 0);
     for arm in arms {

@@ -20,6 +20,7 @@ pub struct JointSystem {
 /// A task beside those of the arms.
 #[derive(Clone)]
 pub(in crate::planner) struct AddedTask {
+    pub(in crate::planner) name: String,
     pub(in crate::planner) task: Arc<dyn Task>,
     /// The arms whose tips it is about, in its own order.
     pub(in crate::planner) arms: Vec<String>,
@@ -29,7 +30,7 @@ pub(in crate::planner) struct AddedTask {
 
 impl std::fmt::Debug for JointSystem {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let tasks: Vec<&str> = self.tasks.iter().map(|added| added.task.name()).collect();
+        let tasks: Vec<&str> = self.tasks.iter().map(|added| added.name.as_str()).collect();
         f.debug_struct("JointSystem").field("arms", &self.arms).field("tasks", &tasks).finish_non_exhaustive()
     }
 }
@@ -58,7 +59,17 @@ impl JointSystem {
         weight: f64,
     ) -> Self {
         let arms = arms.into_iter().map(Into::into).collect();
-        self.tasks.push(AddedTask { task: Arc::new(task), arms, priority, weight });
+        let name = task.name().to_owned();
+        self.tasks.push(AddedTask { name, task: Arc::new(task), arms, priority, weight });
+        self
+    }
+
+    /// The same with a name for the task that was added last, in place of that of its kind.
+    #[must_use]
+    pub fn called(mut self, name: impl Into<String>) -> Self {
+        if let Some(added) = self.tasks.last_mut() {
+            added.name = name.into();
+        }
         self
     }
 

@@ -4,6 +4,7 @@ mod arm;
 mod arm_runtime;
 mod arm_state;
 mod bounds;
+mod dependent_tasks;
 mod derivative_errors;
 mod disturbance;
 mod joint_index;
@@ -18,7 +19,7 @@ mod surroundings;
 
 pub use arm::Arm;
 pub use arm_state::ArmState;
-pub use derivative_errors::{DerivativeErrors, derivative_errors};
+pub use derivative_errors::{DerivativeErrors, derivative_errors, rows_at_start};
 pub use joint_sets::joint_sets;
 pub use joint_system::JointSystem;
 pub use monitor::Violation;
@@ -26,6 +27,7 @@ pub use surroundings::Surroundings;
 
 pub(super) use arm_runtime::{ArmRuntime, Coupling};
 pub(super) use bounds::{Bounds, Deviation};
+pub(super) use dependent_tasks::Dependence;
 pub(super) use disturbance::Disturbance;
 pub(super) use joint_index::JointIndex;
 pub(super) use joint_sets::check_common_starts;

@@ -10,7 +10,8 @@ use crate::law::{
 };
 use crate::planner::PlannerError;
 use crate::robot::Limits;
-use crate::task::{Task, TaskInstant, TaskRows, Tip};
+use crate::task::{Component, Task, TaskInstant, TaskRows, Tip};
+use nalgebra::DMatrix;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -49,6 +50,7 @@ struct Member {
 
 /// A task of a system.
 pub(in crate::planner) struct TaskState {
+    pub(in crate::planner) name: String,
     pub(in crate::planner) task: Arc<dyn Task>,
     /// The tips that it is about.
     tips: Vec<usize>,
@@ -316,6 +318,22 @@ impl System {
         all.filter(|((state, _), _)| !state.is_own)
     }
 
+    /// The Jacobians of all tasks at the sample that was looked at last.
+    pub(in crate::planner) fn jacobians(&self) -> impl Iterator<Item = &DMatrix<f64>> {
+        self.rows.iter().map(|rows| &rows.jacobian)
+    }
+
+    /// What a task is called, with the arm whose own it is.
+    pub(in crate::planner) fn task_name(&self, task: usize) -> (String, Option<String>) {
+        let state = &self.tasks[task];
+        (state.name.clone(), state.is_own.then(|| self.members[state.tips[0]].name.clone()))
+    }
+
+    /// What a row of a task measures.
+    pub(in crate::planner) fn component(&self, task: usize, row: usize) -> Component {
+        self.tasks[task].task.component(row)
+    }
+
     /// Whether all its arms are among those.
     pub(in crate::planner) fn is_within(&self, arms: &Range<usize>) -> bool {
         self.arms().all(|arm| arms.contains(&arm))
@@ -406,7 +424,9 @@ impl Owner {
 
 /// The own tasks of the arms, then those beside them.
 fn tasks(arms: &[ArmRuntime], members: &[Member], added: &[AddedTask]) -> Vec<TaskState> {
-    let own = members.iter().enumerate().map(|(tip, member)| TaskState {
+    let with_own = members.iter().enumerate().filter(|(_, member)| arms[member.arm].arm.has_own_task());
+    let own = with_own.map(|(tip, member)| TaskState {
+        name: arms[member.arm].arm.task.name().to_owned(),
         task: Arc::clone(&arms[member.arm].arm.task),
         tips: vec![tip],
         is_own: true,
@@ -415,6 +435,7 @@ fn tasks(arms: &[ArmRuntime], members: &[Member], added: &[AddedTask]) -> Vec<Ta
     });
     let place = |name: &String| members.iter().position(|member| member.name == *name);
     let added = added.iter().map(|added| TaskState {
+        name: added.name.clone(),
         task: Arc::clone(&added.task),
         tips: added.arms.iter().filter_map(place).collect(),
         is_own: false,
@@ -430,7 +451,7 @@ fn task_shapes(arms: &[ArmRuntime], members: &[Member], tasks: &[TaskState]) -> 
         joints.sort_unstable();
         joints.dedup();
         TaskShape {
-            name: state.task.name().to_owned(),
+            name: state.name.clone(),
             components: (0..state.task.rows()).map(|row| state.task.component(row)).collect(),
             tips: state.tips.clone(),
             length: state.tips.iter().map(|&tip| arms[members[tip].arm].arm.length()).fold(0.0, f64::max),
@@ -459,7 +480,9 @@ fn default_law(arms: &mut [ArmRuntime], indices: &[usize], sigma: f64) -> Box<dy
 /// The threshold of an arm's law if it were resolved alone.
 fn threshold_apart(arm: &mut Arm, sigma: f64) -> f64 {
     let (length, joints) = (arm.length(), arm.chain.dof());
-    let shape = SystemShape { sigma, ..SystemShape::of_one_task(arm.task.rows(), joints, length) };
+    // An arm without a task of its own has a part in rows of any kind.
+    let rows = if arm.has_own_task() { arm.task.rows() } else { Component::ALL.len() };
+    let shape = SystemShape { sigma, ..SystemShape::of_one_task(rows, joints, length) };
     let mut law = arm.take_law();
     law.prepare(&shape);
     law.threshold()

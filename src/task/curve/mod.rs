@@ -4,6 +4,7 @@ mod astroid;
 mod circle;
 mod curve_kind;
 mod fourier;
+mod hold;
 mod line;
 mod lissajous;
 mod planar_curve;
@@ -16,6 +17,7 @@ pub use astroid::Astroid;
 pub use circle::Circle;
 pub use curve_kind::{CurveKind, MakeCurve};
 pub use fourier::Fourier;
+pub use hold::Hold;
 pub use line::Line;
 pub use lissajous::Lissajous;
 pub use planar_curve::PlanarCurve;
@@ -33,6 +35,7 @@ pub const CURVES: &[CurveKind] = &[
     lissajous::KIND,
     rose::KIND,
     fourier::KIND,
+    hold::KIND,
     spline::KIND,
     polyline::KIND,
 ];

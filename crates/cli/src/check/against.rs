@@ -12,7 +12,7 @@ use super::sentences;
 use super::verdict::{ArmChecked, Checked, Clock, PathChecked};
 use kinstep::planner::Arm;
 use kinstep::robot::{Joint, Limits, Robot};
-use kinstep_files::scenario::{ScenarioText, TaskSpec};
+use kinstep_files::scenario::{RelationSpec, ScenarioText};
 use kinstep_files::trajectory::{
     ArmTrajectory, Course, Interpolation, Met, Stage, Straying, TimeFigures, Trajectory, units,
 };
@@ -68,8 +68,8 @@ impl Asked {
         };
         let arms = scenario.arms(text.folder()).map_err(|e| text.placed(e))?;
         let takers = arms.into_iter().map(taker).collect();
-        let name = |task: &TaskSpec| format!("{} of {}", task.kind, task.arms.join(", "));
-        let tasks = scenario.task.iter().map(name).collect();
+        let name = |relation: &RelationSpec| format!("{} of {}", relation.called(), relation.arms.join(", "));
+        let tasks = scenario.relation.iter().map(name).collect();
         Ok(Self { takers, stage, duration: Some(scenario.duration.value()), tasks })
     }
 }
@@ -177,7 +177,7 @@ impl Against {
     fn course(&self) -> Option<Course> {
         let arms = self.trajectory.arms.iter().zip(&self.moved);
         let paths: Vec<(ArmTrajectory, &Arm)> = arms
-            .filter_map(|(arm, moved)| moved.path.as_ref().map(|path| (own_joints(arm, path), path)))
+            .filter_map(|(arm, moved)| moved.own_path().map(|path| (own_joints(arm, path), path)))
             .collect();
         let duration = self.duration.filter(|_| !paths.is_empty())?;
         Some(Course::of(&self.trajectory.times, &paths, duration))
@@ -185,8 +185,13 @@ impl Against {
 }
 
 impl Moved {
+    /// The arm whose path it should follow, if that has one of its own.
+    fn own_path(&self) -> Option<&Arm> {
+        self.path.as_ref().filter(|arm| arm.has_own_task())
+    }
+
     fn worst_error(&self, course: Course, arm: &ArmTrajectory, times: &[f64]) -> Option<Met> {
-        let path = self.path.as_ref()?;
+        let path = self.own_path()?;
         Some(course.worst_error(&own_joints(arm, path), path, times, self.interpolation))
     }
 }

@@ -446,17 +446,37 @@ fn a_task_over_two_tips_is_told_of_wherever_a_plan_is() {
     let pair = format!("{head}{}{}{task}", arm("left", 0.0), arm("right", 0.4));
     let desk = Desk::new(&[("s.toml", &pair), ("alone.toml", SMALL)]);
     let plan = desk.run(&["plan", "s.toml", "--out", "one", "--json"]).expect(0).json();
-    let told = &plan["tasks"][0];
-    assert_eq!((&told["name"], &told["rows"]), (&"distance".into(), &1.into()));
+    let told = &plan["relations"][0];
+    assert_eq!(
+        (&told["name"], &told["kind"], &told["rows"]),
+        (&"distance".into(), &"distance".into(), &1.into())
+    );
     assert_eq!(told["arms"], serde_json::json!(["left", "right"]));
     assert!(number(&told["max_error"]) < 1e-3, "{told}");
-    assert!(
-        desk.run(&["plan", "s.toml"]).expect(0).out.contains("task distance of left and right: max error")
-    );
+    assert!(desk.run(&["plan", "s.toml"]).expect(0).out.contains("distance of left and right: max error"));
     let page = std::fs::read_to_string(desk.path("one/report.html")).unwrap();
-    assert!(page.contains("<p>task distance of left and right: max error"));
+    assert!(page.contains("<p>distance of left and right: max error"));
     let written = std::fs::read_to_string(desk.path("one/scenario.toml")).unwrap();
-    assert!(written.contains("[[task]]") && desk.run(&["plan", "one/scenario.toml"]).code == 0);
+    assert!(written.contains("[[relation]]") && desk.run(&["plan", "one/scenario.toml"]).code == 0);
     let alone = desk.run(&["plan", "alone.toml", "--json"]).expect(0).json();
-    assert!(alone.get("tasks").is_none(), "{alone}");
+    assert!(alone.get("relations").is_none(), "{alone}");
+}
+
+#[test]
+fn two_arms_carry_one_object_to_a_billionth() {
+    let plan = kinstep(&["plan", "examples/carry.toml", "--json"]).expect(0).json();
+    let told = &plan["relations"][0];
+    assert_eq!(
+        (&told["name"], &told["kind"], &told["rows"]),
+        (&"carry".into(), &"object".into(), &12.into())
+    );
+    assert!(
+        number(&told["max_position_error"]) < 1e-9 && number(&told["max_orientation_error"]) < 1e-9,
+        "{told}"
+    );
+    for arm in plan["arms"].as_array().unwrap() {
+        assert!(number(&arm["drift"]) > 0.0 && number(&arm["max_error"]) == 0.0, "{arm}");
+    }
+    let text = kinstep(&["plan", "examples/carry.toml"]).expect(0).out;
+    assert!(text.contains("carry of left and right: max error"), "{text}");
 }

@@ -46,7 +46,7 @@ pub(super) fn reach(
 ) -> Result<Option<Way>, ScenarioError> {
     let beginning = motion.at(0.0);
     let tip = chain.forward(q0, &mut chain.scratch()).pose();
-    if spec.task.error(&tip, &beginning).norm() <= ON_PATH {
+    if spec.task.whole().error(&tip, &beginning).norm() <= ON_PATH {
         return Ok(None);
     }
     let refuse = |problem: String| ScenarioError::at(ErrorKind::Scenario, &at.key("approach"), problem);
@@ -54,7 +54,7 @@ pub(super) fn reach(
     for &(joint, position) in held {
         search = search.holding(joint, position);
     }
-    let target = Target::of_task(spec.task, &beginning);
+    let target = Target::of_task(spec.task.whole(), &beginning);
     let solution = search.solve(chain, &target).map_err(|e| refuse(e.to_string()))?;
     if !solution.is_found() {
         return Err(refuse(format!(

@@ -79,10 +79,10 @@ impl Scenario {
     /// Returns the arms that tasks tie together, and those that share joints and have a law that sees all of these.
     fn systems(&self, kinds: &Kinds, arms: &[Arm]) -> Result<Vec<JointSystem>, ScenarioError> {
         let mut systems = Vec::new();
-        for (index, spec) in self.task.iter().enumerate() {
-            let at = KeyPath::dotted("task").index(index);
+        for (index, spec) in self.relation.iter().enumerate() {
+            let at = KeyPath::dotted("relation").index(index);
             let task = spec.task(&at, kinds, arms, self.duration.value())?;
-            systems.push(JointSystem::of(&spec.arms).with_task(task));
+            systems.push(JointSystem::of(&spec.arms).with_task(task).called(self.relation_name(index)));
         }
         let law = self.law.law(kinds, &[])?;
         if law.fast_path().is_some() {
@@ -90,7 +90,7 @@ impl Scenario {
         }
         let index = |name: &String| arms.iter().position(|arm| arm.name() == name);
         let mut ties: Vec<Vec<usize>> =
-            self.task.iter().map(|task| task.arms.iter().filter_map(index).collect()).collect();
+            self.relation.iter().map(|relation| relation.arms.iter().filter_map(index).collect()).collect();
         // A law that keeps bodies apart has to see all of them.
         if self.collision.is_some() && law.keeps_distances() {
             ties.push((0..arms.len()).collect());
@@ -195,17 +195,20 @@ impl Scenario {
             None => (given, None),
         };
         let start = chain.forward(&q0, &mut chain.scratch()).pose();
-        let motion = spec.path.motion_with(kinds, &start, self.duration.value());
         let unknown =
             || ScenarioError::at(ErrorKind::Scenario, &at.key("path").key("kind"), "there is no such curve");
-        let motion = motion.ok_or_else(unknown)?;
+        let motion = match &spec.path {
+            Some(path) => path.motion_with(kinds, &start, self.duration.value()).ok_or_else(unknown)?,
+            None => Motion::held(&start),
+        };
         let way = match spec.approach {
             Some(Approach::Reach) => reach(&at, spec, (&chain, &held), &motion, &q0)?,
             Some(Approach::Converge) | None => None,
         };
         let (q0, lead) = way.map_or((q0.clone(), None), |way| (way.q0, Some((q0, way.duration))));
         let law = self.law.law(kinds, &q0)?;
-        let mut arm = Arm::new(spec.name.clone(), chain, q0, spec.task, motion).with_law(law);
+        let task = spec.task.of_motion(&at.key("task"), motion, spec.mount.pose().rotation)?;
+        let mut arm = Arm::with_own_task(spec.name.clone(), chain, q0, task).with_law(law);
         if let Some(distance) = distance {
             arm = arm.with_start_distance(distance);
         }
@@ -275,12 +278,12 @@ impl Scenario {
             PlannerError::LawDoesNotFit { .. } | PlannerError::CriterionTooFast { .. } => {
                 (ErrorKind::Scenario, KeyPath::dotted("law"))
             }
-            PlannerError::TaskStart { task, .. } => {
-                let index = self.task.iter().position(|own| own.kind == *task);
-                (
-                    ErrorKind::Scenario,
-                    index.map_or_else(KeyPath::default, |index| KeyPath::dotted("task").index(index)),
-                )
+            PlannerError::TaskStart { task, .. } => (ErrorKind::Scenario, self.place_of_relation(task)),
+            PlannerError::NoTask { arm }
+            | PlannerError::DependentTasks { arm: Some(arm), .. }
+            | PlannerError::StillRows { arm: Some(arm), .. } => (ErrorKind::Scenario, of_arm(arm, "task")),
+            PlannerError::DependentTasks { name, .. } | PlannerError::StillRows { name, .. } => {
+                (ErrorKind::Scenario, self.place_of_relation(name))
             }
             PlannerError::Surroundings { .. } => (ErrorKind::Scenario, KeyPath::dotted("collision")),
             PlannerError::TooNear { .. } => (ErrorKind::Scenario, KeyPath::dotted("collision").key("margin")),

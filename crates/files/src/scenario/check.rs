@@ -1,19 +1,18 @@
 //! What a scenario must satisfy before anything is looked up or computed.
 
 use super::approach::Approach;
+use super::arm_task::ArmTask;
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
-use super::kind_reader::{KindTable, check_length};
+use super::kind_reader::check_length;
 use super::kinds::Kinds;
 use super::model::{ArmSpec, Scenario};
 use super::noise_spec::NoiseSpec;
 use super::path_spec::{PathSpec, TurnSpec};
 use super::start_pose::{self, StartPose};
 use super::study_spec::StudySpec;
-use super::task_spec::TaskSpec;
 use kinstep::kind::Real;
 use kinstep::planner::{MAX_SAMPLE_BYTES, sample_bytes};
-use kinstep::task::TaskKind;
 
 /// Largest length [m], angle [rad] or other number of an arm that is believed.
 pub(super) const MAX_SIZE: f64 = 1e6;
@@ -68,7 +67,7 @@ impl Scenario {
             }));
             found.extend(check_arm(&arms.key(&arm.name), arm, kinds));
         }
-        found.extend(self.check_tasks(kinds));
+        found.extend(self.check_relations(kinds));
         found.extend(self.check_surroundings(kinds));
         // How many steps there are is worth a word only when they are numbers of seconds at all.
         if found[0].is_ok() {
@@ -115,16 +114,6 @@ impl Scenario {
         Ok(())
     }
 
-    fn check_tasks(&self, kinds: &Kinds) -> Vec<Result<(), ScenarioError>> {
-        let check = |(index, task): (usize, &TaskSpec)| {
-            let at = KeyPath::dotted("task").index(index);
-            let table = KindTable { at: &at, kinds: &kinds.tasks, kind: &task.kind, keys: [&[], &[]] };
-            table.check(&task.parameters, (&["arms"], &[], &[]), false)?;
-            task.check_arms(&at, kinds, self)
-        };
-        self.task.iter().enumerate().map(check).collect()
-    }
-
     fn check_size(&self) -> Result<(), ScenarioError> {
         let steps = self.duration.value() / self.sigma.value();
         // A problem has components where a plan has joints.
@@ -169,7 +158,8 @@ fn check_arm(at: &KeyPath, arm: &ArmSpec, kinds: &Kinds) -> Vec<Result<(), Scena
             "only an arm with approach = \"converge\" has a tolerance".to_owned()
         }));
     }
-    found.push(require(arm.approach.is_none() || arm.path.center.is_some(), &at.key("approach"), || {
+    let begins_by_itself = arm.path.as_ref().is_some_and(|path| path.center.is_some());
+    found.push(require(arm.approach.is_none() || begins_by_itself, &at.key("approach"), || {
         "a path without `center` begins at the tip: there is nothing to approach".to_owned()
     }));
     for (name, pose) in [("mount", &arm.mount), ("tool", &arm.tool)] {
@@ -183,14 +173,15 @@ fn check_arm(at: &KeyPath, arm: &ArmSpec, kinds: &Kinds) -> Vec<Result<(), Scena
         found.extend(held.numbers().iter().map(|value| believable(&at, value)));
     }
     found.extend(arm.start_pose.as_ref().map(|start| check_start(&at.key("start_pose"), arm, start)));
-    found.push(check_path(&at.key("path"), &arm.path, arm.task, kinds));
+    found.push(arm.task.check(&at.key("task")));
+    found.push(check_own_path(&at.key("path"), arm, kinds));
     found
 }
 
 fn check_start(at: &KeyPath, arm: &ArmSpec, start: &StartPose) -> Result<(), ScenarioError> {
     let (xyz, rpy) = start.parts();
     if let Some(xyz) = xyz {
-        check_point(&at.key("xyz"), xyz, arm.task)?;
+        check_point(&at.key("xyz"), xyz, &arm.task)?;
         for (value, axis) in xyz.iter().zip(0..) {
             believable(&at.key("xyz").index(axis), value)?;
         }
@@ -209,7 +200,27 @@ pub(super) fn believable(at: &KeyPath, number: &Real) -> Result<(), ScenarioErro
     })
 }
 
-fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind, kinds: &Kinds) -> Result<(), ScenarioError> {
+/// An arm has a path if it has a task of its own.
+fn check_own_path(at: &KeyPath, arm: &ArmSpec, kinds: &Kinds) -> Result<(), ScenarioError> {
+    match &arm.path {
+        Some(_) if arm.task.is_none() => Err(refuse(
+            at,
+            "an arm without a task of its own follows no path; take it away, or give the arm a task",
+        )),
+        Some(path) => check_path(at, path, &arm.task, kinds),
+        None => require(arm.task.is_none(), at, || {
+            "give the path of the tip, `{ kind = \"hold\" }` where it stays; only an arm with task = \"none\" has none"
+                .to_owned()
+        }),
+    }
+}
+
+pub(super) fn check_path(
+    at: &KeyPath,
+    path: &PathSpec,
+    task: &ArmTask,
+    kinds: &Kinds,
+) -> Result<(), ScenarioError> {
     path.check_kind(at, kinds, task)?;
     for (key, index, number) in path.numbers() {
         believable(&index.map_or_else(|| at.key(key), |index| at.key(key).index(index)), number)?;
@@ -218,12 +229,12 @@ fn check_path(at: &KeyPath, path: &PathSpec, task: TaskKind, kinds: &Kinds) -> R
     path.turn.as_ref().map_or(Ok(()), |turn| check_turn(&at.key("turn"), turn, task))
 }
 
-fn check_point(at: &KeyPath, value: &[Real], task: TaskKind) -> Result<(), ScenarioError> {
-    check_length(at, value.len(), task == TaskKind::PositionXy)
+fn check_point(at: &KeyPath, value: &[Real], task: &ArmTask) -> Result<(), ScenarioError> {
+    check_length(at, value.len(), task.is_planar())
 }
 
-fn check_turn(at: &KeyPath, turn: &TurnSpec, task: TaskKind) -> Result<(), ScenarioError> {
-    require(task == TaskKind::Pose, at, || "only a task \"pose\" has an orientation to turn".to_owned())?;
+fn check_turn(at: &KeyPath, turn: &TurnSpec, task: &ArmTask) -> Result<(), ScenarioError> {
+    require(task.turns(), at, || "only a task \"pose\" has an orientation to turn".to_owned())?;
     believable(&at.key("angle"), &turn.angle)?;
     let length = turn.axis.iter().map(|x| x.value() * x.value()).sum::<f64>().sqrt();
     require(length > 0.0 && length.is_finite(), &at.key("axis"), || {

@@ -250,7 +250,9 @@ fn entries(document: &Document<String>) -> Vec<Entry> {
 
 fn collect_table(table: &dyn TableLike, path: &KeyPath, found: &mut Vec<Entry>) {
     for (key, item) in table.iter() {
-        let path = path.key(key);
+        // The other name of that key.
+        let is_alias = key == "task" && *path == KeyPath::default();
+        let path = path.key(if is_alias { "relation" } else { key });
         let key = table.get_key_value(key).and_then(|(key, _)| key.span());
         found.push(Entry { path: path.clone(), key, value: item.span() });
         collect_item(item, &path, found);

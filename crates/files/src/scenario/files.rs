@@ -56,6 +56,12 @@ impl Scenario {
         into: &Path,
     ) -> Result<Self, ScenarioError> {
         let mut moved = self.clone();
+        for path in moved.paths_mut() {
+            if let Some(named) = path.parameters.text("file").map(str::to_owned) {
+                let file = find(&named, folder).ok_or_else(|| missing(&named, folder))?;
+                path.parameters.set("file", reference(&file, into)?.as_str());
+            }
+        }
         for arm in &mut moved.arm {
             if let RobotSource::File(path) = RobotSource::find(&arm.robot, folder)? {
                 arm.robot = reference(&path, into)?;
@@ -63,10 +69,6 @@ impl Scenario {
             if let Some(named) = &arm.calibration {
                 let path = find(named, folder).ok_or_else(|| missing(named, folder))?;
                 arm.calibration = Some(reference(&path, into)?);
-            }
-            if let Some(named) = arm.path.parameters.text("file").map(str::to_owned) {
-                let path = find(&named, folder).ok_or_else(|| missing(&named, folder))?;
-                arm.path.parameters.set("file", reference(&path, into)?.as_str());
             }
             if let Some(named) = &arm.limits {
                 let path = find(named, folder).ok_or_else(|| missing(named, folder))?;

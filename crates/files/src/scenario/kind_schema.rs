@@ -34,8 +34,8 @@ pub(super) fn criteria(schema: &mut Schema) {
     extend(schema, &Kinds::builtin().criteria);
 }
 
-/// Puts the tasks and their parameters into the schema of a task.
-pub(super) fn tasks(schema: &mut Schema) {
+/// Puts the tasks over several tips and their parameters into the schema of a relation.
+pub(super) fn relations(schema: &mut Schema) {
     extend(schema, &Kinds::builtin().tasks);
 }
 

@@ -130,7 +130,10 @@ impl Kinds {
             }
             ["law", "kind"] => Some(self.laws.names()),
             ["law", "criterion", "kind"] => Some(self.criteria.names()),
-            ["task", .., "kind"] => Some(self.tasks.names()),
+            ["relation", .., "path" | "relative", "kind"] => Some(self.curves.names()),
+            ["relation", .., "path" | "relative", "time_law"]
+            | ["relation", .., "path" | "relative", "time_law", "kind"] => Some(self.time_laws.names()),
+            ["relation", .., "kind"] => Some(self.tasks.names()),
             ["obstacle", .., "kind"] => Some(self.obstacles.names()),
             _ => None,
         }

@@ -4,6 +4,7 @@
 //! outside; [`Scenario`] is what it says. Every refusal is a [`ScenarioError`] that names the key and its place.
 
 mod approach;
+mod arm_task;
 mod build;
 mod check;
 mod collision_spec;
@@ -25,19 +26,20 @@ mod model;
 mod noise_spec;
 mod overrides;
 mod path_spec;
+mod relation_spec;
 mod robot_edits;
 mod robots;
 mod staging;
 mod start_pose;
 mod study_spec;
 pub mod suite;
-mod task_spec;
 #[cfg(test)]
 mod tests;
 mod time_law_spec;
 mod waypoint_file;
 
 pub use approach::Approach;
+pub use arm_task::{ArmTask, NoTask, RowsSpec};
 pub use collision_spec::{CollisionSpec, ObstacleSpec};
 pub use criterion_spec::CriterionSpec;
 pub use document::{ScenarioText, read_text};
@@ -55,9 +57,9 @@ pub use lock_position::LockPosition;
 pub use model::{ArmSpec, Mount, Scenario};
 pub use noise_spec::NoiseSpec;
 pub use path_spec::{PathSpec, TurnSpec};
+pub use relation_spec::RelationSpec;
 pub use robot_edits::{calibrated, limited, tool_name};
 pub use robots::RobotSource;
 pub use start_pose::{OnPath, StartPose, TipPose};
 pub use study_spec::{MeasureKind, Precision, ProblemSpec, StudySpec};
-pub use task_spec::TaskSpec;
 pub use time_law_spec::TimeLawSpec;

@@ -5,22 +5,22 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::approach::Approach;
+use super::arm_task::ArmTask;
 use super::collision_spec::{CollisionSpec, ObstacleSpec, obstacle_table};
 use super::error::ScenarioError;
 use super::exactly::exactly;
 use super::key_path::KeyPath;
-use super::kind_reader::{KindTable, Misread};
+use super::kind_reader::Misread;
 use super::kinds::Kinds;
 use super::law_spec::LawSpec;
 use super::lock_position::LockPosition;
 use super::noise_spec::NoiseSpec;
 use super::path_spec::PathSpec;
+use super::relation_spec::RelationSpec;
 use super::start_pose::StartPose;
 use super::study_spec::{ProblemSpec, StudySpec};
-use super::task_spec::TaskSpec;
 use kinstep::integrate::StarterKind;
 use kinstep::kind::Real;
-use kinstep::task::TaskKind;
 
 /// A plan to be made: how time is discretised, what moves, along what, and how redundancy is resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,9 +58,9 @@ pub struct Scenario {
     /// The arms, which move in synchrony.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub arm: Vec<ArmSpec>,
-    /// Tasks over the tips of several arms, beside their own.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub task: Vec<TaskSpec>,
+    /// Tasks over the tips of several arms, beside their own. `task` is another name of this key.
+    #[serde(default, alias = "task", skip_serializing_if = "Vec::is_empty")]
+    pub relation: Vec<RelationSpec>,
     /// What is to be kept apart. Default: nothing is looked at.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collision: Option<CollisionSpec>,
@@ -86,8 +86,8 @@ pub struct ArmSpec {
     pub base: String,
     /// Link at which the chain ends: what follows the path.
     pub tip: String,
-    /// What of the tip follows the path.
-    pub task: TaskKind,
+    /// What of the tip follows the path; "none" leaves the arm to its relations.
+    pub task: ArmTask,
     /// Joint positions at the start in rad or m, one per joint of the chain in its order. Beside `start_pose`: positions
     /// that those found for it should be near.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -125,8 +125,9 @@ pub struct ArmSpec {
     /// Whether joints without a `<limit>` element move without limits. Default: no chain passes through them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub assume_unlimited: bool,
-    /// The path of the tip.
-    pub path: PathSpec,
+    /// The path of the tip; an arm without a task has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<PathSpec>,
 }
 
 /// A pose in the world, or in the link that something is put on.
@@ -159,19 +160,23 @@ impl Mount {
 }
 
 impl Scenario {
+    /// All paths: those of arms, then those of relations.
+    pub(super) fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathSpec> {
+        let relations = self.relation.iter_mut();
+        let relations = relations.flat_map(|relation| relation.path.iter_mut().chain(&mut relation.relative));
+        self.arm.iter_mut().filter_map(|arm| arm.path.as_mut()).chain(relations)
+    }
+
     /// Reads the parameters of everything that names a kind by the registries of its kinds.
     pub(super) fn read_kinds(&mut self, kinds: &Kinds) -> Vec<Misread> {
         let mut misread = self.law.read(kinds);
         for (index, arm) in self.arm.iter_mut().enumerate() {
             let arms = KeyPath::dotted("arm");
             let at = if arm.name.is_empty() { arms.index(index) } else { arms.key(&arm.name) };
-            misread.extend(arm.path.read(&at.key("path"), kinds));
+            misread.extend(arm.path.iter_mut().flat_map(|path| path.read(&at.key("path"), kinds)));
         }
-        for (index, task) in self.task.iter_mut().enumerate() {
-            let at = KeyPath::dotted("task").index(index);
-            let keys: [&[&str]; 2] = [&["kind", "arms"], &[]];
-            let table = KindTable { at: &at, kinds: &kinds.tasks, kind: &task.kind, keys };
-            misread.extend(table.read(&mut task.parameters).err());
+        for (index, relation) in self.relation.iter_mut().enumerate() {
+            misread.extend(relation.read(&KeyPath::dotted("relation").index(index), kinds));
         }
         for (index, obstacle) in self.obstacle.iter_mut().enumerate() {
             let at = KeyPath::dotted("obstacle").index(index);

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::arm_task::ArmTask;
 use super::check::require;
 use super::error::ScenarioError;
 use super::exactly::exactly;
@@ -10,7 +11,7 @@ use super::kind_reader::{KindTable, Misread};
 use super::kinds::Kinds;
 use super::time_law_spec::TimeLawSpec;
 use kinstep::kind::{Parameters, Real, Value};
-use kinstep::task::{MakeCurve, Plane, TaskKind};
+use kinstep::task::{MakeCurve, Plane};
 
 /// A path for the tip. Curves are drawn in `plane`, turned by `rotation`, and shifted so that they begin at the
 /// tip's position at q0 unless `center` is given.
@@ -116,7 +117,7 @@ impl PathSpec {
         &self,
         at: &KeyPath,
         kinds: &Kinds,
-        task: TaskKind,
+        task: &ArmTask,
     ) -> Result<(), ScenarioError> {
         self.time_law.as_ref().map_or(Ok(()), |law| law.check(&at.key("time_law"), kinds))?;
         let table = self.table(at, kinds);
@@ -125,7 +126,7 @@ impl PathSpec {
             MakeCurve::Centered(_) => (&[], &KEYS[4..]),
             MakeCurve::FromTip(_) => (&[], &KEYS[5..]),
         };
-        table.check(&self.parameters, (before, after, &self.given()), task == TaskKind::PositionXy)?;
+        table.check(&self.parameters, (before, after, &self.given()), task.is_planar())?;
         require(!self.has_orientations() || self.turn.is_none(), &at.key("turn"), || {
             "the waypoints say how the tip is turned; take this away, or their orientations".to_owned()
         })

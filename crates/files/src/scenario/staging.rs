@@ -60,7 +60,7 @@ fn staged(spec: &ArmSpec, index: usize, machine: &Machine, tip: &str) -> Result<
     let at = KeyPath::dotted("arm").key(&spec.name).key("tip");
     let refused = |e: &dyn std::fmt::Display| ScenarioError::at(ErrorKind::Robot, &at, e);
     let chain = machine.robot.chain(&spec.base, tip).map_err(|e| refused(&e))?.mounted(&spec.mount.pose());
-    StagedArm::new(&spec.name, (index, &machine.robot), chain, spec.task)
+    StagedArm::new(&spec.name, (index, &machine.robot), chain, spec.task.whole())
         .ok_or_else(|| refused(&"the chain moves a joint that the robot does not have"))
 }
 

@@ -12,6 +12,7 @@ use super::exactly::some_exactly;
 use super::key_path::KeyPath;
 use super::kinds::Kinds;
 use super::model::ArmSpec;
+use super::path_spec::PathSpec;
 use kinstep::inverse::{Search, Solution, Target};
 use kinstep::kind::Real;
 use kinstep::robot::Chain;
@@ -90,16 +91,17 @@ impl StartPose {
     fn target(&self, arm: &ArmSpec, kinds: &Kinds, duration: f64) -> Target {
         let (xyz, rpy) = self.parts();
         // A path without a place of its own has been refused, so that where the tip stands does not matter.
-        let motion = arm.path.motion_with(kinds, &IsometryMatrix3::identity(), duration);
+        let path = arm.path.as_ref();
+        let motion = path.and_then(|path| path.motion_with(kinds, &IsometryMatrix3::identity(), duration));
         let beginning = motion.map(|motion| motion.at(0.0));
         let place = match (xyz, &beginning) {
             (Some(xyz), _) => vector(xyz),
             (None, beginning) => beginning.map_or_else(Vector3::zeros, |beginning| beginning.position),
         };
-        if let (None, TaskKind::Pose, Some(beginning)) = (rpy, arm.task, &beginning) {
+        if let (None, true, Some(beginning)) = (rpy, arm.task.turns(), &beginning) {
             return Target::of_task(TaskKind::Pose, beginning);
         }
-        let is_planar = xyz.or(arm.path.center.as_deref()).is_some_and(|given| given.len() == 2);
+        let is_planar = xyz.or(center(arm)).is_some_and(|given| given.len() == 2);
         match rpy {
             Some(rpy) => {
                 let [roll, pitch, yaw] = rpy.each_ref().map(Real::value);
@@ -155,22 +157,30 @@ fn place(p: &Vector3<f64>) -> String {
     format!("({:.4}, {:.4}, {:.4})", p.x, p.y, p.z)
 }
 
+/// The centre of the arm's path, where it has one.
+fn center(arm: &ArmSpec) -> Option<&[Real]> {
+    arm.path.as_ref()?.center.as_deref()
+}
+
 /// Whether a start on the path makes sense: the sentence against it, if not.
 pub(super) fn objection(arm: &ArmSpec, start: &StartPose) -> Option<String> {
     let (xyz, rpy) = start.parts();
     // Waypoints may say how the tip is turned, which is known once they are read.
-    let path = &arm.path;
-    let is_turned = xyz.is_none() && path.center.is_some() && (path.has_orientations() || path.awaits_file());
-    if rpy.is_none() && arm.task == TaskKind::Pose && !is_turned {
+    let says = |path: &PathSpec| path.center.is_some() && (path.has_orientations() || path.awaits_file());
+    let is_turned = xyz.is_none() && arm.path.as_ref().is_some_and(says);
+    if rpy.is_none() && arm.task.turns() && !is_turned {
         return Some("the task \"pose\" needs to know how the tip is turned: give rpy".to_owned());
     }
-    if xyz.is_none() && arm.path.center.is_none() {
-        let kind = &arm.path.kind;
+    if xyz.is_none() && center(arm).is_none() {
+        let Some(path) = &arm.path else {
+            return Some("an arm without a path starts where it is told: give xyz".to_owned());
+        };
         return Some(format!(
-            "where the {kind} begins is not known, since it begins at the tip; give xyz (a curve with a `center` begins on its own)"
+            "where the {} begins is not known, since it begins at the tip; give xyz (a curve with a `center` begins on its own)",
+            path.kind
         ));
     }
-    let is_planar = xyz.or(arm.path.center.as_deref()).is_some_and(|given| given.len() == 2);
+    let is_planar = xyz.or(center(arm)).is_some_and(|given| given.len() == 2);
     (rpy.is_some() && is_planar)
         .then(|| "beside an orientation the position needs all of x, y and z".to_owned())
 }

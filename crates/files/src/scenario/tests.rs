@@ -58,7 +58,7 @@ fn reads_numbers_and_expressions() {
     let scenario = read(SMALL).unwrap();
     assert_eq!(scenario.arm[0].q0[0].value(), 9.0 * std::f64::consts::PI / 10.0);
     assert_eq!(scenario.arm[0].q0[3].value(), 0.0);
-    assert_eq!(scenario.arm[1].path.kind, "line");
+    assert_eq!(scenario.arm[1].path.as_ref().unwrap().kind, "line");
     assert_eq!(scenario.start, Some(StarterKind::Paper));
     assert_eq!(scenario.arm[0].mount, Mount::default());
 }
@@ -180,7 +180,10 @@ fn values_are_set_from_outside_by_the_names_of_arms() {
             .unwrap();
     assert_eq!(scenario.arm[0].q0[1].value(), std::f64::consts::PI / 2.0);
     assert_eq!(scenario.formula.as_deref(), Some("split-ab6"));
-    assert_eq!(scenario.arm[0].path.parameters.number("radius"), Some(std::f64::consts::PI / 10.0));
+    assert_eq!(
+        scenario.arm[0].path.as_ref().unwrap().parameters.number("radius"),
+        Some(std::f64::consts::PI / 10.0)
+    );
     assert_eq!(scenario.arm[1], read(SMALL).unwrap().arm[1]);
 }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 
+use super::arm_task::ArmTask;
 use super::check::{MAX_SIZE, refuse};
 use super::document::read_text;
 use super::error::{ErrorKind, Place, ScenarioError, suggestion};
@@ -35,19 +36,18 @@ impl Scenario {
         folder: Option<&Path>,
     ) -> Result<Self, ScenarioError> {
         for arm in &mut self.arm {
-            let Some(named) = arm.path.parameters.text("file").map(str::to_owned) else { continue };
-            let at = KeyPath::dotted("arm").key(&arm.name);
-            let file = find(&named, folder).ok_or_else(|| {
-                let missing = missing(&named, folder);
-                ScenarioError {
-                    file: None,
-                    ..ScenarioError::at(ErrorKind::File, &at.key("path").key("file"), missing.message)
-                }
-            })?;
-            arm.path.read_file(&file, arm.task)?;
-            arm.path.check_kind(&at.key("path"), kinds, arm.task)?;
+            let (at, task) = (KeyPath::dotted("arm").key(&arm.name), arm.task.clone());
+            let Some(path) = arm.path.as_mut().filter(|path| path.awaits_file()) else { continue };
+            path.take_waypoints(&at.key("path"), kinds, &task, folder)?;
             let objection = arm.start_pose.as_ref().and_then(|start| start_pose::objection(arm, start));
             objection.map_or(Ok(()), |problem| Err(refuse(&at.key("start_pose"), problem)))?;
+        }
+        for (index, relation) in self.relation.iter_mut().enumerate() {
+            let at = KeyPath::dotted("relation").index(index);
+            for (key, path) in [("path", &mut relation.path), ("relative", &mut relation.relative)] {
+                let Some(path) = path.as_mut().filter(|path| path.awaits_file()) else { continue };
+                path.take_waypoints(&at.key(key), kinds, &TaskKind::Pose.into(), folder)?;
+            }
         }
         Ok(self)
     }
@@ -58,7 +58,8 @@ impl Scenario {
         let Ok(read) = self.clone().with_waypoints_read(&Kinds::builtin(), folder) else { return Vec::new() };
         let duration = self.duration.value();
         let finding = |arm: &ArmSpec| {
-            let times = arm.path.parameters.numbers("times").filter(|_| arm.path.time_law.is_none())?;
+            let path = arm.path.as_ref().filter(|path| path.time_law.is_none())?;
+            let times = path.parameters.numbers("times")?;
             let span = times.last()? - times.first()?;
             let [given, taken] = [span, duration].map(number_text);
             let is_other = (span - duration).abs() > 1e-9 * duration;
@@ -69,6 +70,26 @@ impl Scenario {
 }
 
 impl PathSpec {
+    /// Takes the waypoints of the file that it names in place of the name.
+    fn take_waypoints(
+        &mut self,
+        at: &KeyPath,
+        kinds: &Kinds,
+        task: &ArmTask,
+        folder: Option<&Path>,
+    ) -> Result<(), ScenarioError> {
+        let named = self.parameters.text("file").unwrap_or_default();
+        let file = find(named, folder).ok_or_else(|| {
+            let missing = missing(named, folder);
+            ScenarioError {
+                file: None,
+                ..ScenarioError::at(ErrorKind::File, &at.key("file"), missing.message)
+            }
+        })?;
+        self.read_file(&file, task.whole())?;
+        self.check_kind(at, kinds, task)
+    }
+
     /// Takes the waypoints of a file.
     fn read_file(&mut self, file: &Path, task: TaskKind) -> Result<(), ScenarioError> {
         let text = read_text(file)?;

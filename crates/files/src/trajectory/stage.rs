@@ -69,7 +69,7 @@ pub struct StagedArm {
     pub machine: usize,
     /// The chain, mounted in the world.
     pub chain: Chain,
-    /// What of the tip follows the path.
+    /// What of the tip follows the path: the plain task that its own is a part of.
     pub task: TaskKind,
     /// The place in [`Robot::joints`] of every joint of the chain.
     joints: Vec<usize>,

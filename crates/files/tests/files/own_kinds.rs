@@ -7,7 +7,7 @@ use kinstep::law::{Pseudoinverse, Resolution, SystemShape};
 use kinstep::nalgebra::Vector6;
 use kinstep::planner::Plan;
 use kinstep::task::{Circle, MakeCurve, MakeTask, Task, TaskInstant, TaskRows, TimeLaw};
-use kinstep_files::scenario::{CriterionSpec, Kinds, Scenario, ScenarioError, ScenarioText, TaskSpec};
+use kinstep_files::scenario::{CriterionSpec, Kinds, RelationSpec, Scenario, ScenarioError, ScenarioText};
 
 const ONE: &str = r#"
 sigma = 0.01
@@ -154,7 +154,7 @@ fn the_posture_holds_the_joints_where_they_start_or_pulls_them_elsewhere() {
 #[test]
 fn a_posture_sees_the_joints_of_all_arms_that_are_tied() {
     let criterion = "h = 0.4\n[[law.criterion]]\nkind = \"posture\"\nrate = 2";
-    let tied = format!("{PAIR}[[task]]\nkind = \"distance\"\narms = [\"left\", \"right\"]\n")
+    let tied = format!("{PAIR}[[relation]]\nkind = \"distance\"\narms = [\"left\", \"right\"]\n")
         .replace("h = 0.4", criterion);
     let plan = run(&tied, &Kinds::builtin()).unwrap();
     assert!(plan.is_completed() && plan.tasks[0].max_error() < 1e-5);
@@ -240,58 +240,62 @@ const LEVEL: Kind<MakeTask> = Kind::new(
     "level",
     "Two tips keep their offset in height.",
     &[Parameter::optional("factor", Form::Number, "", "Factor. Default: 1.")],
-    MakeTask {
-        tips: 2,
-        make: |given, start| {
-            let [one, other] = start.tips else { return Err("this is about two tips".to_owned()) };
-            let offset = other.translation.z - one.translation.z;
-            Ok(Box::new(Level { offset, factor: given.number("factor").unwrap_or(1.0) }))
-        },
-    },
+    MakeTask::of(2, |given, start| {
+        let [one, other] = start.tips else { return Err("this is about two tips".to_owned()) };
+        let offset = other.translation.z - one.translation.z;
+        Ok(Box::new(Level { offset, factor: given.number("factor").unwrap_or(1.0) }))
+    }),
 );
 
 #[test]
 fn a_task_of_ones_own_ties_two_tips() {
     let kinds = Kinds::builtin().with_task(LEVEL);
-    let own = format!("{PAIR}[[task]]\nkind = \"level\"\narms = [\"left\", \"right\"]\nfactor = 2\n");
+    let own = format!("{PAIR}[[relation]]\nkind = \"level\"\narms = [\"left\", \"right\"]\nfactor = 2\n");
     let plan = run(&own, &kinds).unwrap();
     assert_eq!((plan.tasks[0].name.as_str(), plan.tasks[0].rows), ("level", 1));
     assert!(plan.is_completed() && plan.tasks[0].max_error() < 1e-5, "{}", plan.tasks[0].max_error());
     let scenario = read(&own, &kinds).unwrap();
     assert_eq!(read(&scenario.to_toml(), &kinds).unwrap(), scenario);
     let message = refusal(&own, &Kinds::builtin());
-    assert!(message.starts_with("task[0].kind: \"level\" is not one of distance"), "{message}");
+    assert!(
+        message
+            .starts_with("relation[0].kind: \"level\" is not one of relative, cooperative, object, distance"),
+        "{message}"
+    );
 }
 
 #[test]
 fn tips_keep_their_distance_or_the_one_that_is_asked_for() {
     let kinds = Kinds::builtin();
-    let tied =
-        |more: &str| format!("{PAIR}[[task]]\nkind = \"distance\"\narms = [\"left\", \"right\"]\n{more}\n");
+    let tied = |more: &str| {
+        format!("{PAIR}[[relation]]\nkind = \"distance\"\narms = [\"left\", \"right\"]\n{more}\n")
+    };
     let plan = run(&tied(""), &kinds).unwrap();
     assert!(plan.is_completed() && plan.tasks[0].max_error() < 1e-5, "{}", plan.tasks[0].max_error());
     assert_eq!(plan.tasks[0].arms, ["left", "right"]);
     let nearer = run(&tied("to = 0.6"), &kinds).unwrap();
     assert!(nearer.is_completed() && nearer.tasks[0].max_error() < 1e-5, "{}", nearer.tasks[0].max_error());
     assert!(apart(&last(&plan, 0), &last(&nearer, 0)) > 1e-3);
-    let spec = TaskSpec::new("distance", ["left", "right"]);
+    let by_its_other_name = tied("").replace("[[relation]]", "[[task]]");
+    assert_eq!(read(&by_its_other_name, &kinds).unwrap(), read(&tied(""), &kinds).unwrap());
+    let spec = RelationSpec::new("distance", ["left", "right"]);
     let mut scenario = read(PAIR, &kinds).unwrap();
-    scenario.task.push(spec);
+    scenario.relation.push(spec);
     assert_eq!(read(&scenario.to_toml(), &kinds).unwrap(), read(&tied(""), &kinds).unwrap());
     for (more, said) in [
-        ("distance = 9", "task[0]: task `distance`"),
-        ("distance = 0", "task[0].distance: 0 m is not a distance; it is positive"),
-        ("distance = \"tau\"", "task[0].distance: \"tau\", column 1"),
-        ("distance = true", "task[0].distance: invalid type: boolean `true`, expected a number"),
-        ("distanz = 1", "task[0].distanz: there is no such key; did you mean distance?"),
+        ("distance = 9", "relation[0]: task `distance`"),
+        ("distance = 0", "relation[0].distance: 0 m is not a distance; it is positive"),
+        ("distance = \"tau\"", "relation[0].distance: \"tau\", column 1"),
+        ("distance = true", "relation[0].distance: invalid type: boolean `true`, expected a number"),
+        ("distanz = 1", "relation[0].distanz: there is no such key; did you mean distance?"),
     ] {
         let message = refusal(&tied(more), &kinds);
         assert!(message.starts_with(said), "{more}: {message}");
     }
     for (arms, said) in [
-        ("[\"left\"]", "task[0].arms: a distance is about the tips of 2 arms, got 1"),
-        ("[\"left\", \"rigt\"]", "task[0].arms[1]: there is no arm \"rigt\"; did you mean right?"),
-        ("[\"left\", \"left\"]", "task[0].arms[1]: the arm \"left\" is named twice"),
+        ("[\"left\"]", "relation[0].arms: a distance is about the tips of 2 arms, got 1"),
+        ("[\"left\", \"rigt\"]", "relation[0].arms[1]: there is no arm \"rigt\"; did you mean right?"),
+        ("[\"left\", \"left\"]", "relation[0].arms[1]: the arm \"left\" is named twice"),
     ] {
         let message = refusal(&tied("").replace("[\"left\", \"right\"]", arms), &kinds);
         assert_eq!(message, said);

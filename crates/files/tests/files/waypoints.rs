@@ -100,7 +100,7 @@ fn waypoints_without_a_center_are_laid_to_the_tip() {
         .replace("start_pose = \"path\"\n", "");
     let scenario = read(&text);
     let start = IsometryMatrix3::new(Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.1, 0.2, 0.3));
-    let motion = scenario.arm[0].path.motion(&start, 3.0).unwrap();
+    let motion = scenario.arm[0].path.as_ref().unwrap().motion(&start, 3.0).unwrap();
     let (begin, end) = (motion.at(0.0), motion.at(3.0));
     assert!((begin.position - Vector3::new(1.0, 2.0, 3.0)).norm() < 1e-12);
     assert!((begin.rotation.matrix() - start.rotation.matrix()).norm() < 1e-12);
@@ -114,7 +114,7 @@ fn waypoints_without_a_center_are_laid_to_the_tip() {
 fn times_are_the_time_law_and_are_stretched_to_the_duration() {
     let table = "t,x,y,z\n0,0.45,0,0.45\n1,0.5,0,0.45\n4,0.5,0.1,0.4\n5,0.4,0.1,0.4\n";
     let (folder, mut scenario) = with_table(table, "");
-    scenario.arm[0].task = kinstep::task::TaskKind::Position;
+    scenario.arm[0].task = kinstep::task::TaskKind::Position.into();
     let arm = &scenario.arms(Some(folder.path())).unwrap()[0];
     // Nothing but the poses of the plan says where the tip was: 0.6 s of 3 are 1 s of 5.
     let plan = plan(&scenario, Some(folder.path())).unwrap();
@@ -162,11 +162,11 @@ fn waypoints_turn_the_tip_by_themselves_or_a_turn_does() {
 fn a_time_law_is_a_word_or_a_table_and_is_written_as_it_was_read() {
     let text = format!("{PANDA}{INLINE}time_law = {{ kind = \"s-curve\", ramp = \"1/4\" }}\n");
     let scenario = read(&text);
-    let law = scenario.arm[0].path.time_law.clone().unwrap();
+    let law = scenario.arm[0].path.as_ref().unwrap().time_law.clone().unwrap();
     assert_eq!(law.parameters.number("ramp"), Some(0.25));
     assert_eq!(read(&scenario.to_toml()), scenario);
     let word = format!("{PANDA}{INLINE}time_law = \"s-curve\"\n");
-    assert_eq!(read(&word).arm[0].path.time_law, Some(TimeLawSpec::new("s-curve")));
+    assert_eq!(read(&word).arm[0].path.as_ref().unwrap().time_law, Some(TimeLawSpec::new("s-curve")));
     assert!(read(&word).to_toml().contains("time_law = \"s-curve\""));
 }
 

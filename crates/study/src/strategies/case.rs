@@ -174,7 +174,7 @@ impl OrderCase {
             robot: self.arm.urdf(),
             base: "base".to_owned(),
             tip: "tip".to_owned(),
-            task: self.arm.task,
+            task: self.arm.task.into(),
             q0: self.arm.q0().into_iter().map(Into::into).collect(),
             start_pose: None,
             mount: scenario::Mount::default(),
@@ -186,7 +186,7 @@ impl OrderCase {
             lock: BTreeMap::new(),
             independent: false,
             assume_unlimited: false,
-            path: path_spec(&self.path, self.smallest_singular_value, self.arm.task, self.time_law),
+            path: Some(path_spec(&self.path, self.smallest_singular_value, self.arm.task, self.time_law)),
         };
         Scenario {
             sigma: (DURATION / steps.first().copied().unwrap_or(1) as f64).into(),
@@ -200,7 +200,7 @@ impl OrderCase {
             study: Some(StudySpec { steps: Some(steps), order: self.orders.task, ..StudySpec::default() }),
             problem: None,
             arm: vec![arm],
-            task: Vec::new(),
+            relation: Vec::new(),
             collision: None,
             obstacle: Vec::new(),
         }
