@@ -5,13 +5,16 @@ use super::{Avoidance, Instant, SystemShape};
 const APPROACH: f64 = 0.1;
 /// What rounding is left of a bound, as a fraction of what it is compared with.
 const ROUNDING: f64 = 1e-12;
+/// How many times what curvature may take the damper keeps in reserve, so that it alone acts where bodies slide along each other:
+/// a row that holds the next sample itself makes the differences of multistep rows jump.
+const RESERVE: f64 = 4.0;
 /// How much longer a step is thought to be than the one that asked for tighter rows.
 const ROOM: f64 = 1.1;
 
 /// The rows `G x <= g` of joint velocities that keep near pairs of bodies apart: velocity dampers (Faverjon and Tournassoud 1987).
 ///
 /// With `d` the distance of a pair and `J = dd/dq`, a velocity `x = f + g`, of which the feedback part `g` is given, is held to
-/// - `-J x <= v (d - margin - s) / (influence - margin)`, and no more than a tenth of the way `d - margin - s` per step;
+/// - `-J x <= v (d - margin - 4 s) / (influence - margin)`, and no more than a tenth of that way per step;
 /// - the next sample `q' = known + first f + second g` with `-J (q' - q) <= d - margin - s`.
 ///
 /// `s = 1/2 L (sum |q' - q|)^2`, with `L` the longest lever by which a joint moves the points, bounds what the second derivative
@@ -113,8 +116,9 @@ impl DistanceRows {
     fn write_bounds(&mut self) {
         self.bounds.clear();
         for &Contact { left, lever, change, .. } in &self.contacts {
-            let safe = left - 0.5 * lever * self.step * self.step;
-            let mut bound = self.rate * safe;
+            let curvature = 0.5 * lever * self.step * self.step;
+            let safe = left - curvature;
+            let mut bound = self.rate * (left - RESERVE * curvature);
             if left > 0.0 && self.first > 0.0 {
                 bound = bound.min((safe + change) / self.first);
             }

@@ -53,7 +53,7 @@ fn past_the_ball(law: impl Law + 'static, formula: &str, sigma: f64) -> Plan {
     let arm = arm("arm", 0.0, sideways(), law);
     builder(formula, sigma)
         .arm(arm)
-        .surroundings(with_ball(around(&[("arm", 0.0)]), 0.08))
+        .surroundings(with_ball(around(&[("arm", 0.0)]), 0.07))
         .build()
         .unwrap()
         .run()
