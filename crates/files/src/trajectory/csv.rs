@@ -7,6 +7,7 @@ use super::csv_records::{Field, Records, Separator, quoted};
 use super::csv_samples::Samples;
 use super::digits::push_full;
 use super::error::Problem;
+use super::lines::write_lines;
 use super::read::{Source, TrajectoryReader};
 use super::{ReadOptions, Reading, Recording, TrajectoryFormat, csv_metadata};
 
@@ -27,18 +28,14 @@ impl TrajectoryFormat for Csv {
         let names = trajectory.columns();
         let header: Vec<_> = names.iter().map(|name| quoted(name)).collect();
         writeln!(out, "{}", header.join(","))?;
-        let mut line = Vec::new();
-        for (sample, time) in trajectory.times.iter().enumerate() {
-            line.clear();
-            push_full(&mut line, *time);
+        write_lines(trajectory.samples(), out, |text: &mut Vec<u8>, sample| {
+            push_full(text, trajectory.times[sample]);
             for value in trajectory.values(sample) {
-                line.push(b',');
-                push_full(&mut line, value);
+                text.push(b',');
+                push_full(text, value);
             }
-            line.push(b'\n');
-            out.write_all(&line)?;
-        }
-        Ok(())
+            text.push(b'\n');
+        })
     }
 }
 

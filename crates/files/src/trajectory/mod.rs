@@ -26,6 +26,7 @@ mod hint;
 mod inspect;
 mod json;
 mod limits_file;
+mod lines;
 mod mcap;
 mod mcap_records;
 mod messages;

@@ -7,6 +7,7 @@ use super::clock::Stamp;
 use super::controller::{Refusal, check_command};
 use super::error::Problem;
 use super::group::Group;
+use super::lines::write_lines;
 use super::messages::Messages;
 use super::quantity::Quantity;
 use super::read::{Source, TrajectoryReader};
@@ -123,21 +124,19 @@ fn write_joint_trajectory(
     yaml::push_list(&mut text, group.columns.iter().map(|column| yaml::quoted(column.joint)));
     let _ = write!(text, "\n{indent}points:");
     writeln!(out, "{text}")?;
-    for (sample, time) in trajectory.times.iter().enumerate() {
-        text.clear();
+    write_lines(trajectory.samples(), out, |text: &mut String, sample| {
         let _ = write!(text, "{indent}- positions: ");
-        yaml::push_numbers(&mut text, group.positions(sample));
+        yaml::push_numbers(text, group.positions(sample));
         for quantity in rates() {
             if group.has(quantity) {
                 let _ = write!(text, "\n{indent}  {}: ", quantity.plural());
-                yaml::push_numbers(&mut text, group.values(quantity, sample));
+                yaml::push_numbers(text, group.values(quantity, sample));
             }
         }
-        let Stamp { sec, nanosec } = Stamp::of(time - trajectory.times[0]).unwrap_or(Stamp::ZERO);
-        let _ = write!(text, "\n{indent}  time_from_start: {{sec: {sec}, nanosec: {nanosec}}}");
-        writeln!(out, "{text}")?;
-    }
-    Ok(())
+        let since = trajectory.times[sample] - trajectory.times[0];
+        let Stamp { sec, nanosec } = Stamp::of(since).unwrap_or(Stamp::ZERO);
+        let _ = writeln!(text, "\n{indent}  time_from_start: {{sec: {sec}, nanosec: {nanosec}}}");
+    })
 }
 
 impl TrajectoryReader for Ros2Yaml {
