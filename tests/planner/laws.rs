@@ -285,7 +285,8 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 fn every_criterion_moves_the_joints_and_betters_its_own_measure() {
     let plain = run(LAWS[0].make.law(&Parameters::new(), Criteria::new()), "la6-wang-guo", 0.01);
     let chain = planar();
-    for kind in CRITERIA {
+    // What keeps away from obstacles is tested where there are some.
+    for kind in CRITERIA.iter().filter(|kind| kind.name != "clearance") {
         let given = Parameters::new().with("rate", 2.0);
         let given = if kind.name == "posture" { given.with("q", vec![0.5; 4]) } else { given };
         let law = LAWS[0].make.law(&given, criterion(kind.name, &given));

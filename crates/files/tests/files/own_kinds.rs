@@ -119,13 +119,16 @@ fn a_criterion_of_ones_own_changes_the_motion_and_not_the_order_of_the_error() {
     let scenario = read(&own, &kinds).unwrap();
     assert_eq!(read(&scenario.to_toml(), &kinds).unwrap(), scenario);
     let message = refusal(&own, &Kinds::builtin());
-    assert!(message.starts_with("law.criterion[0].kind: \"drift\" is not one of posture"), "{message}");
+    assert!(message.starts_with("law.criterion[0].kind: \"drift\" is not one of repetitive, "), "{message}");
     let message = refusal(&own.replace("speed = 0.2", "sped = 0.2"), &kinds);
     assert_eq!(message, "law.criterion[0].sped: there is no such key; did you mean speed?");
     let message = refusal(&own.replace("speed = 0.2", ""), &kinds);
     assert_eq!(message, "law.criterion[0].speed: a drift needs this");
     let message = refusal(&own.replace("\"drift\"", "\"drft\""), &kinds);
-    assert_eq!(message, "law.criterion[0].kind: \"drft\" is not one of posture, drift; did you mean drift?");
+    assert_eq!(
+        message,
+        "law.criterion[0].kind: \"drft\" is not one of repetitive, joint-limits, manipulability, posture, clearance, drift; did you mean drift?"
+    );
 }
 
 #[test]
@@ -198,13 +201,19 @@ fn a_law_of_ones_own_is_named_like_the_built_in_one() {
     let message = refusal(&own.replace("\"transposed\"", "\"transpose\""), &kinds);
     assert_eq!(
         message,
-        "law.kind: \"transpose\" is not one of pseudoinverse, transposed; did you mean transposed?"
+        "law.kind: \"transpose\" is not one of pseudoinverse, damped, weighted, prioritized, qp, saturated, network, transposed; did you mean transposed?"
     );
     let message = refusal(&own.replace("rate = 0.2", "threshold = 0.2"), &kinds);
-    assert_eq!(message, "law.threshold: a transposed has no such parameter; it has h, gain, rate");
+    assert_eq!(
+        message,
+        "law.threshold: a transposed has no such parameter; it has h, gain, acceleration_limit, rate"
+    );
     let criterion = own.replace("rate = 0.2", "[[law.criterion]]\nkind = \"posture\"\nrate = 1");
     let message = refusal(&criterion, &kinds);
-    assert_eq!(message, "law.criterion: a transposed has no such parameter; it has h, gain, rate");
+    assert_eq!(
+        message,
+        "law.criterion: a transposed has no such parameter; it has h, gain, acceleration_limit, rate"
+    );
     let replaced = MakeLaw::Plain(|_| Box::new(Pseudoinverse::new()));
     let kinds = kinds.with_law(Kind::new("transposed", "No longer.", &[], replaced));
     let again = run(&own.replace("rate = 0.2", ""), &kinds).unwrap();
