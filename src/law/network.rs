@@ -119,7 +119,7 @@ impl RecurrentNetwork {
         let h = pair.optimum().ok_or_else(|| format!("the row `{}` settles no error", formula.id()))?.h;
         let rate = h / pair.gamma_sum().to_f64().unwrap_or(f64::NAN);
         let idle = crate::integrate::Ode::new(unknowns, |_: f64, _: &[f64], derivative: &mut [f64]| {
-            derivative.fill(0.0)
+            derivative.fill(0.0);
         });
         let zeros = vec![0.0; unknowns];
         let stepper = Multistep::new(formula, &Starter::Rk4, &idle, 0.0, 1.0, &zeros);

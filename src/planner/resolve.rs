@@ -16,7 +16,7 @@ pub(super) fn resolved(
     surroundings: Option<&Surroundings>,
 ) -> Result<(Vec<ArmRuntime>, Vec<System>), PlannerError> {
     let mut laws = arms.iter().map(|arm| &arm.law).chain(asked.iter().map(|system| &system.law));
-    if surroundings.is_some() && laws.any(|law| law.as_ref().is_some_and(|law| law.keeps_distances())) {
+    if surroundings.is_some() && laws.any(|law| law.as_deref().is_some_and(Law::keeps_distances)) {
         asked.push(JointSystem::of(arms.iter().map(Arm::name)));
     }
     let added = || asked.iter().flat_map(|system| &system.tasks);

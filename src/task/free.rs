@@ -5,7 +5,7 @@ use super::{Task, TaskInstant, TaskRows};
 pub struct Free;
 
 impl Task for Free {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "none"
     }
 

@@ -92,6 +92,9 @@ pub struct Held {
 
 impl Held {
     /// The poses of all hands but the first in the frame of the first.
+    ///
+    /// # Errors
+    /// A mask that a pose at rest can not have, such as one in axes of the path, as the end of a sentence.
     pub fn new(mask: &Mask, others: &[IsometryMatrix3<f64>]) -> Result<Self, String> {
         let rows = |pose| PoseRows::new(mask.clone(), Motion::held(pose), Rotation3::identity());
         Ok(Self { others: others.iter().map(rows).collect::<Result<_, _>>()? })

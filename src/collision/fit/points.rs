@@ -42,7 +42,7 @@ fn along(
 ) -> Result<Capsule, ShapeError> {
     let [z, x, y] = [0, 1, 2].map(|i| axes.column((axis + i) % 3).into_owned());
     let shadow = |point: &Vector3<f64>| [(point - middle).dot(&x), (point - middle).dot(&y)];
-    let center = middle_of_circle(points.iter().map(shadow));
+    let center = middle_of_circle(&points.iter().map(shadow).collect::<Vec<_>>());
     let place = |point: &Vector3<f64>| {
         let [x, y] = shadow(point);
         ((point - middle).dot(&z), (x - center[0]).hypot(y - center[1]))
@@ -55,11 +55,11 @@ fn along(
 }
 
 /// The middle of about the smallest circle around points (Badoiu and Clarkson): ever shorter steps to the farthest of them.
-fn middle_of_circle(points: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
+fn middle_of_circle(points: &[[f64; 2]]) -> [f64; 2] {
     let mut center = [0.0; 2];
     for step in 1..=STEPS {
         let square = |point: &[f64; 2]| (point[0] - center[0]).powi(2) + (point[1] - center[1]).powi(2);
-        let Some(far) = points.clone().max_by(|a, b| square(a).total_cmp(&square(b))) else { break };
+        let Some(far) = points.iter().max_by(|a, b| square(a).total_cmp(&square(b))) else { break };
         for i in 0..2 {
             center[i] += (far[i] - center[i]) / (step as f64 + 1.0);
         }

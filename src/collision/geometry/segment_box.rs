@@ -79,7 +79,7 @@ impl Core {
             (Some(i), Some(j)) if j == i + 1 => {
                 knots[i] + (knots[j] - knots[i]) * (slopes[i] / (slopes[i] - slopes[j]))
             }
-            _ => (knots[low.min(high)] + knots[high.max(low)]) / 2.0,
+            _ => f64::midpoint(knots[low.min(high)], knots[high.max(low)]),
         }
     }
 

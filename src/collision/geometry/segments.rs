@@ -79,7 +79,7 @@ fn inner(a: &Capsule, b: &Capsule) -> Option<Inner> {
     }
     let ends = [between.dot(&e), (b.to() - a.from()).dot(&e)];
     let (low, high) = (ends[0].min(ends[1]).max(0.0), ends[0].max(ends[1]).min(length_u));
-    (low <= high).then(|| Inner::Facing(a.from() + e * ((low + high) / 2.0)))
+    (low <= high).then(|| Inner::Facing(a.from() + e * f64::midpoint(low, high)))
 }
 
 /// Returns a unit vector at right angles to both vectors, whatever they are.

@@ -100,7 +100,7 @@ fn entries<'a, 'i>(file: &Entries<'a, 'i>, kind: &str, report: &mut Report<'_>) 
         return Vec::new();
     };
     let mut entries = Vec::new();
-    for entry in list.iter() {
+    for entry in list {
         match entry.get_ref().as_table() {
             Some(table) => entries.push(Entries { table, offset: entry.span().start }),
             None => wrong_type(kind, "tables", entry, report),

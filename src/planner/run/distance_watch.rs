@@ -51,7 +51,9 @@ impl DistanceWatch {
         let mut closest: Option<(usize, usize)> = None;
         for n in 0..samples {
             q.clear();
-            arms.iter().for_each(|arm| q.extend_from_slice(arm.position(n)));
+            for arm in arms {
+                q.extend_from_slice(arm.position(n));
+            }
             let nearest = self.scene.place(&q, &mut scratch).minimum()?;
             let distance = nearest.separation.distance;
             if closest.is_none_or(|(n, _)| distance < course[n]) {

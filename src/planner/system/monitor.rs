@@ -168,11 +168,9 @@ impl Monitor {
 
     pub(in crate::planner) fn observe_joints(&mut self, t: f64, q: &[f64], velocity: &[f64]) {
         let (limits, previous) = (&self.limits, &self.previous);
-        if self.returning.contains(&true) {
-            self.look_closely(t, q, velocity);
-        } else if with_instructions(level(), Excess { limits, positions: q, previous, velocities: velocity })
-            > 0.0
-        {
+        let excess = Excess { limits, positions: q, previous, velocities: velocity };
+        // Joints that come back from outside are looked at until they are within.
+        if with_instructions(level(), excess) > 0.0 || self.returning.contains(&true) {
             self.look_closely(t, q, velocity);
         }
         self.previous.copy_from_slice(q);

@@ -168,7 +168,9 @@ fn question(name: &str, node: Node<'_, '_>, report: &mut Report<'_>) {
 fn pair(node: Node<'_, '_>, known: Known, robot: &Robot, report: &mut Report<'_>) -> Option<DisabledPair> {
     let misspelt = element::check_attributes(node, known, false, report);
     if !misspelt.is_empty() {
-        misspelt.into_iter().for_each(|(place, cause)| report.error(place, cause));
+        for (place, cause) in misspelt {
+            report.error(place, cause);
+        }
         return None;
     }
     let [one, other] = ["link1", "link2"].map(|name| link(node, known.element, name, robot, report));
