@@ -65,7 +65,7 @@ fn row(
     criterion: Option<&CriterionKind>,
 ) -> Result<String, Box<dyn Error>> {
     let mut scenario = scenario.clone();
-    scenario.law.kind = law.name.to_owned();
+    law.name.clone_into(&mut scenario.law.kind);
     scenario.law.parameters = given.clone();
     let pull = |kind: &CriterionKind| CriterionSpec {
         kind: kind.name.to_owned(),
@@ -104,5 +104,9 @@ fn outcome(plan: &Plan) -> String {
     let crossed: usize = plan.arms.iter().map(|arm| arm.violations.len()).sum();
     let distance =
         plan.distance.as_ref().map_or_else(|| "-".to_owned(), |near| format!("{:.3}", near.minimum));
-    format!("{:.1e} | {:.1e} | {crossed} | {distance}", most(|arm| arm.max_error), most(|arm| arm.drift()))
+    format!(
+        "{:.1e} | {:.1e} | {crossed} | {distance}",
+        most(|arm| arm.max_error),
+        most(kinstep::planner::ArmPlan::drift)
+    )
 }

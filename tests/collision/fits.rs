@@ -91,12 +91,11 @@ fn a_mesh_of_a_rod_becomes_a_rod() {
     let folder = tempfile::tempdir().unwrap();
     // A closed box of 10 cm by 2 cm by 2 cm.
     let corner = |i: usize| [i & 1, (i >> 1) & 1, (i >> 2) & 1].map(|bit| bit as f64);
-    let corners: String = (0..8)
-        .map(|i| {
-            let [x, y, z] = corner(i);
-            format!("v {} {} {}\n", 0.1 * x, 0.02 * y, 0.02 * z)
-        })
-        .collect();
+    let vertex = |i: usize| {
+        let [x, y, z] = corner(i);
+        format!("v {} {} {}\n", 0.1 * x, 0.02 * y, 0.02 * z)
+    };
+    let corners = (0..8).map(vertex).collect::<Vec<_>>().concat();
     let faces = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
     std::fs::write(folder.path().join("rod.obj"), corners + faces).unwrap();
     let model = fitted(r#"<mesh filename="rod.obj"/>"#, Some(folder.path()));

@@ -124,15 +124,15 @@ impl Kinds {
     pub(super) fn names_at(&self, path: &KeyPath) -> Option<Vec<&'static str>> {
         let keys: Vec<&str> = path.steps().iter().filter_map(Step::as_key).collect();
         match keys.as_slice() {
-            ["arm", .., "path", "kind"] => Some(self.curves.names()),
-            ["arm", .., "path", "time_law"] | ["arm", .., "path", "time_law", "kind"] => {
-                Some(self.time_laws.names())
+            ["arm", .., "path", "kind"] | ["relation", .., "path" | "relative", "kind"] => {
+                Some(self.curves.names())
             }
+            ["arm", .., "path", "time_law"]
+            | ["arm", .., "path", "time_law", "kind"]
+            | ["relation", .., "path" | "relative", "time_law"]
+            | ["relation", .., "path" | "relative", "time_law", "kind"] => Some(self.time_laws.names()),
             ["law", "kind"] => Some(self.laws.names()),
             ["law", "criterion", "kind"] => Some(self.criteria.names()),
-            ["relation", .., "path" | "relative", "kind"] => Some(self.curves.names()),
-            ["relation", .., "path" | "relative", "time_law"]
-            | ["relation", .., "path" | "relative", "time_law", "kind"] => Some(self.time_laws.names()),
             ["relation", .., "kind"] => Some(self.tasks.names()),
             ["obstacle", .., "kind"] => Some(self.obstacles.names()),
             _ => None,

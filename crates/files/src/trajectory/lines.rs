@@ -51,14 +51,17 @@ pub(super) fn write_lines<T: AsRef<[u8]> + Default + Send>(
 mod tests {
     use super::*;
 
+    fn line(n: usize) -> Vec<u8> {
+        format!("{n}\n").into_bytes()
+    }
+
     #[test]
     fn lines_stand_in_order_however_many_there_are() {
         for samples in [0, 1, PIECE - 1, PIECE, PIECE + 1, 7 * PIECE + 3] {
             let mut written = Vec::new();
-            write_lines(samples, &mut written, |text: &mut String, n| text.push_str(&format!("{n}\n")))
-                .unwrap();
-            let expected: String = (0..samples).map(|n| format!("{n}\n")).collect();
-            assert!(written == expected.as_bytes(), "{samples}");
+            write_lines(samples, &mut written, |text: &mut Vec<u8>, n| text.extend(line(n))).unwrap();
+            let expected: Vec<u8> = (0..samples).flat_map(line).collect();
+            assert!(written == expected, "{samples}");
         }
     }
 
