@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that can not go on stops")]
 
 use kinstep::formula::FormulaTable;
+use kinstep::kind::Parameters;
 use kinstep::math::rotation_vector;
 use kinstep::nalgebra::{IsometryMatrix3, Rotation3, Unit, Vector3};
 use kinstep::planner::{
@@ -164,7 +165,7 @@ fn carry(formula: &str, sigma: f64) -> Plan {
     let tips = [pose(&panda(), &PANDA), pose(&iiwa(&mount()), &IIWA)];
     let kind = TASKS.iter().find(|kind| kind.name == "object").unwrap();
     let start = TaskStart { paths: &[("path", &Leant)], ..TaskStart::new(&tips, DURATION) };
-    let task = (kind.make.make)(&Default::default(), &start).unwrap();
+    let task = (kind.make.make)(&Parameters::default(), &start).unwrap();
     let arms = [free("left", panda(), &PANDA), free("right", iiwa(&mount()), &IIWA)];
     let system = JointSystem::of(["left", "right"]).with_task(task).called("carry");
     builder(formula, sigma).arms(arms).system(system).build().unwrap().run()

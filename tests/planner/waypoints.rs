@@ -332,7 +332,8 @@ fn run_along_a_spline(formula: &str, law: Box<dyn TimeLaw>, steps: usize) -> Pla
 /// With `k` continuous derivatives errors fall like the power `k + 1`, or that of the formula at a fixed h if it is less.
 #[test]
 fn formulas_show_as_much_of_their_order_as_the_path_is_smooth() {
-    let laws: [(fn() -> Box<dyn TimeLaw>, f64); 3] = [
+    type Made = fn() -> Box<dyn TimeLaw>;
+    let laws: [(Made, f64); 3] = [
         (|| Box::new(Sin2Sin2), 5.0),
         (|| Box::new(SCurve { ramp: 0.25, rounding: 1.0 }), 3.0),
         (|| Box::new(Trapezoid { ramp: 0.25 }), 2.0),
