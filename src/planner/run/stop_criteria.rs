@@ -130,7 +130,12 @@ fn place(reference: &Reference) -> String {
 /// Stops the run when a task beside those of the arms is lost.
 pub(in crate::planner) fn check_added_tasks(system: &System, arms: &[ArmRuntime], t: f64) -> Option<Stop> {
     let first = &arms[system.arms().next()?];
+    let first_priority = system.shape().tasks.iter().map(|task| task.priority).min();
     for ((state, rows), shape) in system.added_tasks() {
+        // What comes later in a stack may be missed.
+        if Some(shape.priority) > first_priority {
+            continue;
+        }
         let error = rows.error_by_component(&*state.task);
         let has_too_few_joints = first.bounds.has_too_few_joints;
         let bounds = Bounds { length: shape.length, has_too_few_joints };

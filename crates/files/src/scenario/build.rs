@@ -82,7 +82,10 @@ impl Scenario {
         for (index, spec) in self.relation.iter().enumerate() {
             let at = KeyPath::dotted("relation").index(index);
             let task = spec.task(&at, kinds, arms, self.duration.value())?;
-            systems.push(JointSystem::of(&spec.arms).with_task(task).called(self.relation_name(index)));
+            let weight = value_or(spec.weight.as_ref(), 1.0);
+            let system = JointSystem::of(&spec.arms);
+            let system = system.with_task_of(&spec.arms, task, spec.priority, weight);
+            systems.push(system.called(self.relation_name(index)));
         }
         let law = self.law.law(kinds, &[])?;
         if law.fast_path().is_some() {

@@ -11,7 +11,7 @@ use super::kind_reader::{KindTable, Misread, named};
 use super::kinds::Kinds;
 use super::model::{Mount, Scenario};
 use super::path_spec::PathSpec;
-use kinstep::kind::Parameters;
+use kinstep::kind::{Parameters, Real};
 use kinstep::planner::Arm;
 use kinstep::task::{LayPath, MakeTask, Motion, Task, TaskKind, TaskStart};
 
@@ -28,6 +28,13 @@ pub struct RelationSpec {
     pub kind: String,
     /// The arms whose tips it is about, by name, in the relation's own order.
     pub arms: Vec<String>,
+    /// Place in a stack of tasks, for the law "prioritized": what comes first is met first; the arms' own tasks stand at 0.
+    /// Default: 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub priority: usize,
+    /// Weight beside other tasks where not all can be met, for the law "qp" in least squares. Default: 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weight: Option<Real>,
     /// The parameters of its kind.
     #[serde(flatten)]
     #[cfg_attr(feature = "schema", schemars(skip))]
@@ -53,9 +60,14 @@ pub struct RelationSpec {
     pub relative: Option<PathSpec>,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+fn is_zero(priority: &usize) -> bool {
+    *priority == 0
+}
+
 /// The keys of a relation before the parameters of its kind, and after them.
 pub(super) const KEYS: [&[&str]; 2] =
-    [&["name", "kind", "arms"], &["rows", "axes", "point", "pose", "path", "relative"]];
+    [&["name", "kind", "arms", "priority", "weight"], &["rows", "axes", "point", "pose", "path", "relative"]];
 
 impl RelationSpec {
     /// Returns a relation of that kind over the tips of these arms, without parameters.
@@ -64,6 +76,8 @@ impl RelationSpec {
             name: None,
             kind: kind.to_owned(),
             arms: arms.into_iter().map(Into::into).collect(),
+            priority: 0,
+            weight: None,
             parameters: Parameters::new(),
             rows: None,
             axes: None,
@@ -129,8 +143,17 @@ impl RelationSpec {
         let rows: &[&str] = if make.takes_rows { &KEYS[1][..3] } else { &[] };
         let pose: &[&str] = if make.takes_pose { &KEYS[1][3..4] } else { &[] };
         let after = [rows, pose, make.paths].concat();
-        table.check(&self.parameters, (&["name", "arms"], &after, &self.given()), false)?;
+        table.check(
+            &self.parameters,
+            (&["name", "arms", "priority", "weight"], &after, &self.given()),
+            false,
+        )?;
         self.check_arms(at, &make, scenario)?;
+        if let Some(weight) = &self.weight {
+            require(weight.value() > 0.0, &at.key("weight"), || {
+                format!("{weight} is not a weight; it is positive")
+            })?;
+        }
         if self.mask().is_given() {
             self.mask().mask(at)?;
         }
