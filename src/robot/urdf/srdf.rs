@@ -50,7 +50,7 @@ pub struct DisabledPair {
 ///     &panda,
 /// )
 /// .unwrap_err();
-/// assert!(error.to_string().contains("`panda_lnik7`") && error.to_string().contains("did you mean `panda_link7`?"));
+/// assert!(error.to_string().contains("no link `panda_lnik7`; did you mean `panda_link7`"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
