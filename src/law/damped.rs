@@ -1,12 +1,12 @@
 use super::criteria_sum::CriteriaSum;
-use super::damping::default_threshold;
-use super::task_stack::{TaskStack, dot};
+use super::damping::threshold;
+use super::task_stack::TaskStack;
 use super::{
     Criteria, Criterion, Infeasible, Instant, JointVelocity, Law, LawKind, LinearityKind, MakeLaw,
     Resolution, SystemShape,
 };
 use crate::kind::{Form, Kind, Parameter, Parameters};
-use crate::math::RowRotations;
+use crate::math::{RowRotations, dot};
 use crate::robot::Limits;
 
 /// How an inverse is damped.
@@ -164,8 +164,7 @@ impl Damped {
 impl Law for Damped {
     fn prepare(&mut self, shape: &SystemShape) {
         let (rows, joints) = (shape.rows(), shape.joints.len());
-        let thresholds = shape.tasks.iter().map(|task| default_threshold(task.length, task.has_angles()));
-        self.threshold = self.given_threshold.unwrap_or_else(|| thresholds.fold(0.0, f64::max));
+        self.threshold = threshold(self.given_threshold, shape);
         self.criteria.prepare(shape);
         self.stack = TaskStack::new(shape);
         self.rotations = RowRotations::with_capacity(rows, joints);

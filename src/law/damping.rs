@@ -1,14 +1,18 @@
 //! The one rule for inverses near a singularity.
 
-use super::Resolution;
+use super::{Resolution, SystemShape, TaskShape};
 use crate::math::RowRotations;
 
 /// The default threshold, as a fraction of the length by which a task is judged.
 const RELATIVE_THRESHOLD: f64 = 1e-3;
 
-/// The threshold of a task that is judged by `length` \[m\]: of at most one metre where angles are asked for too.
-pub(super) fn default_threshold(length: f64, has_angles: bool) -> f64 {
-    RELATIVE_THRESHOLD * if has_angles { length.min(1.0) } else { length }
+/// The threshold that was given, or else the largest of those of all tasks: of a task that is judged by a length \[m\] a fraction
+/// of it, of at most one metre where angles are asked for too.
+pub(super) fn threshold(given: Option<f64>, shape: &SystemShape) -> f64 {
+    let of_task = |task: &TaskShape| {
+        RELATIVE_THRESHOLD * if task.has_angles() { task.length.min(1.0) } else { task.length }
+    };
+    given.unwrap_or_else(|| shape.tasks.iter().map(of_task).fold(0.0, f64::max))
 }
 
 /// Whether an undamped inverse may be used: its singular values are certain to lie above the threshold, and it means

@@ -44,9 +44,9 @@ pub trait RangeMethod: Send {
 /// null-space criteria ask for. The bounds keep the limits of positions, velocities and accelerations, of the velocity itself
 /// and of the sample that it leads to; all arms that are resolved together are one problem. While no limit is active the answer
 /// is that of [`Pseudoinverse`], to the last bit; where one is, the feedback part stays what it is there, `-k J^+ e`, so that the
-/// task error falls by the row's `gamma` at all times, and the feedforward part makes room for the limits. Near a singularity the tasks ask for what the damped inverse gives. Where the
-/// tasks can not be met within the limits, the run stops and says which rows are in conflict. A joint that is beyond a limit
-/// comes back. By a method that [takes rows](RangeMethod::takes_rows) bodies are kept apart too, where something stands around
+/// task error falls by the row's `gamma` at all times, and the feedforward part makes room for the limits. Near a singularity the
+/// tasks ask for what the damped inverse gives. Where the tasks can not be met within the limits, the run stops and says which rows
+/// are in conflict. A joint that is beyond a limit comes back. By a method that [takes rows](RangeMethod::takes_rows) bodies are kept apart too, where something stands around
 /// the arms ([`Avoidance`](super::Avoidance)).
 #[derive(Default)]
 pub struct Limited<M> {

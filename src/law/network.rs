@@ -1,10 +1,9 @@
 use super::limited::{Limited, RangeMethod};
-use super::task_stack::dot;
 use super::{LawKind, MakeLaw, SystemShape};
 use crate::formula::{Formula, FormulaTable};
 use crate::integrate::{Field, Multistep, Starter, Status};
 use crate::kind::{Form, Kind, Parameter, Parameters};
-use crate::math::{Constraint, LeastDistance, NoSolution, RowRotations};
+use crate::math::{Constraint, LeastDistance, NoSolution, RowRotations, dot};
 use num_traits::ToPrimitive;
 
 /// What a network that has settled may miss of what the tasks ask for, as a fraction of it, unless given.

@@ -1,11 +1,11 @@
 use super::criteria_sum::CriteriaSum;
-use super::damping::default_threshold;
-use super::task_stack::{TaskStack, dot};
+use super::damping::threshold;
+use super::task_stack::TaskStack;
 use super::{
     Criteria, Criterion, Infeasible, Instant, JointVelocity, Law, LawKind, MakeLaw, Resolution, SystemShape,
 };
 use crate::kind::Kind;
-use crate::math::RowRotations;
+use crate::math::{RowRotations, dot};
 use std::ops::Range;
 
 /// Singular values below this fraction of the longest row are rounding.
@@ -166,8 +166,7 @@ impl Level {
 impl Law for Prioritized {
     fn prepare(&mut self, shape: &SystemShape) {
         let joints = shape.joints.len();
-        let thresholds = shape.tasks.iter().map(|task| default_threshold(task.length, task.has_angles()));
-        self.threshold = self.given_threshold.unwrap_or_else(|| thresholds.fold(0.0, f64::max));
+        self.threshold = threshold(self.given_threshold, shape);
         self.criteria.prepare(shape);
         self.stack = TaskStack::new(shape);
         self.levels = levels(shape).into_iter().map(|rows| Level::new(rows, joints)).collect();

@@ -1,5 +1,5 @@
 use super::criteria_sum::CriteriaSum;
-use super::damping::{DampedInverse, default_threshold, is_regular};
+use super::damping::{DampedInverse, is_regular, threshold};
 use super::fixed_rows::FixedRows;
 use super::shape::one_priority;
 use super::stacked::StackedRows;
@@ -87,8 +87,7 @@ impl Pseudoinverse {
 
 impl Law for Pseudoinverse {
     fn prepare(&mut self, shape: &SystemShape) {
-        let thresholds = shape.tasks.iter().map(|task| default_threshold(task.length, task.has_angles()));
-        self.threshold = self.given_threshold.unwrap_or_else(|| thresholds.fold(0.0, f64::max));
+        self.threshold = threshold(self.given_threshold, shape);
         self.criteria.prepare(shape);
         self.workspace = Some(Workspace::new(shape));
     }

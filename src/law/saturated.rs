@@ -1,7 +1,7 @@
 use super::limited::{Limited, RangeMethod};
 use super::{LawKind, MakeLaw, SystemShape};
 use crate::kind::Kind;
-use crate::math::{Constraint, LeastDistance, NoSolution, RowRotations};
+use crate::math::{Constraint, LeastDistance, NoSolution, RowRotations, dot};
 
 /// What counts as lost rank, as a fraction of the smallest singular value with all joints.
 const LOST_RANK: f64 = 1e-6;
@@ -98,7 +98,7 @@ impl NullSpaceSaturation {
         let joints = x.len();
         let rows = problem.equalities.chunks_exact(joints).zip(problem.values);
         for (rest, (row, value)) in self.rest.iter_mut().zip(rows) {
-            *rest = value - super::task_stack::dot(row, &self.fixed);
+            *rest = value - dot(row, &self.fixed);
         }
         x.copy_from_slice(&self.fixed);
         if let Some(rotations) = &self.rotations {
@@ -152,7 +152,6 @@ pub(super) const KIND: LawKind = Kind::new(
 
 #[cfg(test)]
 mod tests {
-    use super::super::task_stack::dot;
     use super::*;
     use crate::math::LeastDistanceSolver;
     use proptest::prelude::*;

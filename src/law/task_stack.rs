@@ -1,4 +1,5 @@
 use super::SystemShape;
+use crate::math::dot;
 use crate::task::TaskRows;
 
 /// The rows of all tasks of a system, one after the other: `J`, and what is asked of it in both parts.
@@ -60,8 +61,4 @@ impl TaskStack {
             *out = dot(self.row(row), velocity);
         }
     }
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -41,6 +41,7 @@ pub use factor_degrees::possible_factor_degrees;
 pub use gram::GramCholesky;
 pub use number_text::number_text;
 pub use polynomial::Polynomial;
+pub(crate) use quadratic_program::dot;
 pub use quadratic_program::{Constraint, LeastDistance, LeastDistanceSolver, NoSolution, Solved};
 pub use rational::{
     MAX_DIGITS, ParseRationalError, Rational, parse_rational, rational_from_f64, rational_to_f64,

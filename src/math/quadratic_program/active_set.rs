@@ -1,5 +1,5 @@
 use super::factors::Factors;
-use super::problem::{Constraint, LeastDistance};
+use super::problem::{Constraint, LeastDistance, dot};
 
 /// A normal whose part beside the active ones is smaller than this fraction of it depends on them.
 const DEPENDENT: f64 = 1e-11;
@@ -86,7 +86,7 @@ impl ActiveSet {
     fn come_nearer(&mut self, problem: &LeastDistance<'_>, x: &mut [f64]) {
         for (place, &constraint) in self.constraints.iter().enumerate() {
             let value = problem.normal(constraint, &mut self.normal);
-            self.residual[place] = value - super::problem::dot(&self.normal, x);
+            self.residual[place] = value - dot(&self.normal, x);
         }
         self.factors.solve_transposed(&self.residual, &mut self.change);
         self.factors.add_active_part(&self.change, x);

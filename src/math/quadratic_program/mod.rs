@@ -7,5 +7,6 @@ mod solver;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use problem::dot;
 pub use problem::{Constraint, LeastDistance, NoSolution};
 pub use solver::{LeastDistanceSolver, Solved};

@@ -1,5 +1,5 @@
 use super::active_set::ActiveSet;
-use super::problem::{Constraint, LeastDistance, NoSolution};
+use super::problem::{Constraint, LeastDistance, NoSolution, dot};
 
 /// What counts as a violation, as a fraction of the size of the numbers.
 const TOLERANCE: f64 = 1e-13;
@@ -101,7 +101,7 @@ impl LeastDistanceSolver {
         for i in 0..problem.values.len() {
             let equality = Constraint::Equality(i);
             let (value, free) = self.set.look_at(problem, equality);
-            let missed = value - super::problem::dot(&self.set.normal, x);
+            let missed = value - dot(&self.set.normal, x);
             if free > 0.0 {
                 let length = missed / free;
                 for (x, step) in x.iter_mut().zip(&self.set.step) {
@@ -175,7 +175,7 @@ impl LeastDistanceSolver {
                 return Err(NoSolution::TooManySteps);
             }
             let (value, free) = self.set.look_at(problem, constraint);
-            let missed = value - super::problem::dot(&self.set.normal, x);
+            let missed = value - dot(&self.set.normal, x);
             let full = if free > 0.0 { missed / free } else { f64::INFINITY };
             let (partial, leaving) = self.first_to_leave(equalities);
             let length = full.min(partial);
@@ -227,5 +227,5 @@ impl LeastDistanceSolver {
 }
 
 fn norm(entries: &[f64]) -> f64 {
-    super::problem::dot(entries, entries).sqrt()
+    dot(entries, entries).sqrt()
 }

@@ -243,7 +243,7 @@ fn steady_mean_square(errors: &[Vector6<f64>]) -> f64 {
 /// What became of joints that started outside their position limits.
 fn return_warning(plan: &ArmPlan, runtime: &ArmRuntime) -> Option<String> {
     let outside: Vec<&str> =
-        runtime.monitor.stayed_outside().map(|joint| plan.joints[joint].as_str()).collect();
+        runtime.monitor.stayed_outside().iter().map(|&joint| plan.joints[joint].as_str()).collect();
     if !outside.is_empty() {
         let (arm, joints) = (&plan.name, outside.join("`, `"));
         return Some(format!(

@@ -51,8 +51,8 @@ fn larger(a: f64, b: f64) -> f64 {
 pub(in crate::planner) struct Monitor {
     position: Vec<Worst>,
     velocity: Vec<Worst>,
-    /// Which joints started outside their position limits and have not been within since.
-    returning: Vec<bool>,
+    /// The joints that started outside their position limits and have not been within since.
+    returning: Vec<usize>,
     /// When the last of them came back \[s\].
     pub(in crate::planner) returned: Option<f64>,
     /// The positions one sample ago.
@@ -98,8 +98,10 @@ impl Kernel for Excess<'_> {
 impl Monitor {
     /// The monitor of a chain whose joints start at `q0` [rad or m].
     pub(in crate::planner) fn new(chain: &Chain, q0: &[f64], sigma: f64) -> Self {
+        let starts = chain.joints().iter().zip(q0).enumerate();
+        let outside = starts.filter(|(_, (joint, q))| !joint.limits.contains(**q));
         Self {
-            returning: chain.joints().iter().zip(q0).map(|(joint, q)| !joint.limits.contains(*q)).collect(),
+            returning: outside.map(|(joint, _)| joint).collect(),
             returned: None,
             position: vec![Worst::NONE; chain.dof()],
             velocity: vec![Worst::NONE; chain.dof()],
@@ -170,7 +172,7 @@ impl Monitor {
         let (limits, previous) = (&self.limits, &self.previous);
         let excess = Excess { limits, positions: q, previous, velocities: velocity };
         // Joints that come back from outside are looked at until they are within.
-        if with_instructions(level(), excess) > 0.0 || self.returning.contains(&true) {
+        if with_instructions(level(), excess) > 0.0 || !self.returning.is_empty() {
             self.look_closely(t, q, velocity);
         }
         self.previous.copy_from_slice(q);
@@ -182,9 +184,10 @@ impl Monitor {
         for (i, limit) in self.limits.iter().enumerate() {
             let ([lower], [upper], [fastest]) = (limit.lower, limit.upper, limit.velocity);
             self.position[i].observe(t, q[i], lower, upper);
-            if self.returning[i] && lower <= q[i] && q[i] <= upper {
+            if self.returning.contains(&i) && lower <= q[i] && q[i] <= upper {
                 // What was asked for has been done: the limits hold from here on.
-                (self.returning[i], self.returned, self.position[i]) = (false, Some(t), Worst::NONE);
+                self.returning.retain(|&joint| joint != i);
+                (self.returned, self.position[i]) = (Some(t), Worst::NONE);
             }
             self.velocity[i].observe(t, velocity[i], -fastest, fastest);
             // NaN before the first step compares as no violation.
@@ -209,8 +212,8 @@ impl Monitor {
     }
 
     /// The joints that started outside their position limits and never came back.
-    pub(in crate::planner) fn stayed_outside(&self) -> impl Iterator<Item = usize> {
-        (0..self.returning.len()).filter(|&joint| self.returning[joint])
+    pub(in crate::planner) fn stayed_outside(&self) -> &[usize] {
+        &self.returning
     }
 
     pub(in crate::planner) fn violations(&self, chain: &Chain) -> Vec<Violation> {
