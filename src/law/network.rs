@@ -5,6 +5,7 @@ use crate::integrate::{Field, Multistep, Starter, Status};
 use crate::kind::{Form, Kind, Parameter, Parameters};
 use crate::math::{Constraint, LeastDistance, NoSolution, RowRotations, dot};
 use num_traits::ToPrimitive;
+use std::cell::OnceCell;
 
 /// What a network that has settled may miss of what the tasks ask for, as a fraction of it, unless given.
 const TOLERANCE: f64 = 1e-12;
@@ -47,6 +48,7 @@ pub enum NetworkKind {
 /// step. The state lives on from sample to sample, which is a warm start.
 pub struct RecurrentNetwork {
     formula: Result<Formula, String>,
+    rate: OnceCell<Result<f64, String>>,
     kind: NetworkKind,
     tolerance: f64,
     most_steps: usize,
@@ -91,6 +93,7 @@ impl RecurrentNetwork {
         let formula = FormulaTable::builtin().get(id).cloned().map_err(|unknown| unknown.to_string());
         Self {
             formula,
+            rate: OnceCell::new(),
             kind: NetworkKind::default(),
             tolerance: TOLERANCE,
             most_steps: MOST_STEPS,
@@ -113,10 +116,8 @@ impl RecurrentNetwork {
     /// The stepper of so many unknowns and its rate, or why the row can not run it.
     fn stepper(&self, unknowns: usize) -> Result<(Multistep<f64>, f64), String> {
         let formula = self.formula.as_ref().map_err(Clone::clone)?;
-        formula.runnable().map_err(|refusal| refusal.to_string())?;
-        let pair = formula.without_split();
-        let h = pair.optimum().ok_or_else(|| format!("the row `{}` settles no error", formula.id()))?.h;
-        let rate = h / pair.gamma_sum().to_f64().unwrap_or(f64::NAN);
+        // The optimum takes a search, and is asked for by the objection and by the preparation.
+        let rate = self.rate.get_or_init(|| rate(formula)).clone()?;
         let idle = crate::integrate::Ode::new(unknowns, |_: f64, _: &[f64], derivative: &mut [f64]| {
             derivative.fill(0.0);
         });
@@ -124,6 +125,14 @@ impl RecurrentNetwork {
         let stepper = Multistep::new(formula, &Starter::Rk4, &idle, 0.0, 1.0, &zeros);
         stepper.map(|stepper| (stepper, rate)).map_err(|refusal| refusal.to_string())
     }
+}
+
+/// `gamma` with steps of unit length, so that `h = gamma beta(1)` is the row's optimum; or why the row can not run a network.
+fn rate(formula: &Formula) -> Result<f64, String> {
+    formula.runnable().map_err(|refusal| refusal.to_string())?;
+    let pair = formula.without_split();
+    let h = pair.optimum().ok_or_else(|| format!("the row `{}` settles no error", formula.id()))?.h;
+    Ok(h / pair.gamma_sum().to_f64().unwrap_or(f64::NAN))
 }
 
 impl Network {
