@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn pictures(text: &str) -> Result<Vec<Figure>, Box<dyn Error>> {
-    let folder = Some(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples")));
+    let folder = Some(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples")));
     let scenario = ScenarioText::parse(text)?.scenario()?;
     let stage = scenario.stage(folder)?;
     let plan = scenario.planner(FormulaTable::builtin(), folder)?.run();
