@@ -2,12 +2,14 @@
 
 use std::io::{self, Write};
 
+use super::blocks::line_end;
 use super::csv_layout::{Head, Layout};
 use super::csv_records::{Field, Records, Separator, quoted};
 use super::csv_samples::Samples;
 use super::digits::push_full;
 use super::error::Problem;
 use super::lines::write_lines;
+use super::long_file::LongFile;
 use super::read::{Source, TrajectoryReader};
 use super::{ReadOptions, Reading, Recording, TrajectoryFormat, csv_metadata};
 
@@ -47,32 +49,52 @@ impl TrajectoryReader for Csv {
     fn read(&self, source: Source<'_>, options: &ReadOptions) -> Result<Reading, Problem> {
         let text = source.text()?;
         let mut notes = Vec::new();
-        let separator = separator(text)?;
-        if separator != Separator::Comma {
-            notes.push(format!("fields are separated by {}", separator.name()));
-        }
-        let (mut records, mut fields) = (Records::separated_by(text, separator), Vec::new());
-        if !records.read(&mut fields)? {
-            return Err(Problem::at(
-                0,
-                "the file is empty; its first line names the columns, as in t,arm.joint1",
-            ));
-        }
-        let first = first_record(&records)?;
-        let layout = layout(&fields, &first, options, &mut notes)?;
-        let mut samples = Samples::new(layout, options, separator != Separator::Comma);
+        let (mut records, mut samples) = begin(text, options, &mut notes)?;
         samples.reserve(text.bytes().filter(|&byte| byte == b'\n').count());
-        loop {
-            while records.take_plain(|line| samples.push_numbers(line)) {}
-            if !records.read(&mut fields)? {
-                break;
-            }
+        let mut fields = Vec::new();
+        while records.read(&mut fields)? {
             samples.push(&fields, records.end())?;
         }
         let mut trajectory = samples.finish(text.trim_end().len(), &mut notes)?;
         trajectory.about = csv_metadata::beside(source.path)?;
         Ok(Reading { trajectory, notes })
     }
+
+    fn read_blocks(&self, file: &mut LongFile<'_>, options: &ReadOptions) -> Option<Reading> {
+        let (head, start) = file.head()?;
+        let mut notes = Vec::new();
+        let (mut records, mut samples) = begin(&head, options, &mut notes).ok()?;
+        let mut first = Vec::new();
+        records.read(&mut first).ok().filter(|is_read| *is_read)?;
+        samples.push(&first, records.end()).ok()?;
+        let rows = samples.plain_rows(records.separator())?;
+        samples.reserve(file.length() / first.iter().map(|field| field.text.len() + 1).sum::<usize>().max(1));
+        let blocks = file.blocks(start + records.at(), line_end)?;
+        blocks.each(|block| rows.read(block), |read| samples.push_plain(&read).then_some(()))?;
+        let mut trajectory = samples.finish(0, &mut notes).ok()?;
+        trajectory.about = csv_metadata::beside(file.path()).ok()?;
+        Some(Reading { trajectory, notes })
+    }
+}
+
+/// Reads the header of a table, and makes ready for its rows.
+fn begin<'t>(
+    text: &'t str,
+    options: &ReadOptions,
+    notes: &mut Vec<String>,
+) -> Result<(Records<'t>, Samples), Problem> {
+    let separator = separator(text)?;
+    if separator != Separator::Comma {
+        notes.push(format!("fields are separated by {}", separator.name()));
+    }
+    let (mut records, mut header) = (Records::separated_by(text, separator), Vec::new());
+    if !records.read(&mut header)? {
+        let message = "the file is empty; its first line names the columns, as in t,arm.joint1";
+        return Err(Problem::at(0, message));
+    }
+    let first = first_record(&records)?;
+    let layout = layout(&header, &first, options, notes)?;
+    Ok((records, Samples::new(layout, options, separator != Separator::Comma)))
 }
 
 /// The first sample, as it is written.

@@ -90,18 +90,14 @@ impl<'t> Records<'t> {
         }
     }
 
-    /// Hands the fields of the next line to `take` where it has no quotes in it, and goes on behind it if that returns true;
-    /// returns what it did.
-    pub(super) fn take_plain(&mut self, take: impl FnOnce(std::str::Split<'t, char>) -> bool) -> bool {
-        let rest = &self.text[self.at..];
-        let end = rest.find('\n').unwrap_or(rest.len());
-        let line = rest[..end].trim_end_matches('\r');
-        let is_plain = !line.is_empty() && self.separator != Separator::Blanks && !line.contains('"');
-        let is_taken = is_plain && take(line.split(self.separator.character()));
-        if is_taken {
-            self.at = (self.at + end + 1).min(self.text.len());
-        }
-        is_taken
+    /// What stands between fields.
+    pub(super) fn separator(&self) -> Separator {
+        self.separator
+    }
+
+    /// Where the next record begins.
+    pub(super) fn at(&self) -> usize {
+        self.at
     }
 
     /// Where the record that was read last ends.

@@ -1,7 +1,7 @@
 //! The samples of a table while they are read.
 
 use super::csv_layout::{Layout, Role};
-use super::csv_records::Field;
+use super::csv_records::{Field, Separator};
 use super::error::{Problem, excerpt};
 use super::quantity::Quantity;
 use super::times::Times;
@@ -19,9 +19,39 @@ pub(super) struct Samples {
     left_out: usize,
     /// Whether the joints of each quantity stand in their order, in a table that has no rows of others.
     is_in_order: bool,
-    /// The values of a row that are not left out, and the place of the time among them.
-    row: Vec<f64>,
-    time: usize,
+}
+
+/// Reads rows of nothing but numbers, without the words for what may be wrong with them.
+pub(super) struct PlainRows {
+    roles: Vec<Role>,
+    separator: char,
+}
+
+impl PlainRows {
+    /// Returns the values of the rows of a text that belong to a column that is known, row after row; `None` where something else
+    /// stands in it.
+    pub(super) fn read(&self, text: &str) -> Option<Vec<f64>> {
+        let mut values = Vec::with_capacity(text.len() / 16);
+        for line in text.split('\n') {
+            if !line.trim().is_empty() {
+                self.read_row(line.trim_end_matches('\r'), &mut values)?;
+            }
+        }
+        Some(values)
+    }
+
+    fn read_row(&self, line: &str, values: &mut Vec<f64>) -> Option<()> {
+        let mut fields = line.split(self.separator);
+        for role in &self.roles {
+            let field = fields.next()?;
+            if *role != Role::Other {
+                values.push(field.parse().ok().filter(|value: &f64| value.is_finite())?);
+            } else if field.contains('"') {
+                return None;
+            }
+        }
+        fields.next().is_none().then_some(())
+    }
 }
 
 impl Samples {
@@ -38,15 +68,12 @@ impl Samples {
                 Role::Other => String::new(),
             }
         };
-        let mut known = layout.roles.iter().filter(|role| **role != Role::Other);
         let place = |wanted: Role| layout.roles.iter().position(|role| *role == wanted);
         Self {
             names: layout.roles.iter().map(name).collect(),
             times: Times::new(options.time_unit.or(layout.unit)),
             split_time: place(Role::Nanoseconds).and_then(|rest| Some([place(Role::Time)?, rest])),
             is_in_order: is_in_order(&layout),
-            row: Vec::new(),
-            time: known.position(|role| *role == Role::Time).unwrap_or_default(),
             layout,
             may_have_commas,
             has_commas: false,
@@ -70,34 +97,28 @@ impl Samples {
         }
     }
 
-    /// Adds a row of nothing but numbers, and returns whether it was one; nothing is added where it was not.
-    pub(super) fn push_numbers<'f>(&mut self, mut fields: impl Iterator<Item = &'f str>) -> bool {
-        if !self.is_in_order || self.times.len() == 0 {
-            return false;
-        }
-        self.row.clear();
-        for role in &self.layout.roles {
-            let Some(field) = fields.next() else { return false };
-            if *role == Role::Other {
-                continue;
+    /// What reads rows of nothing but numbers; `None` where rows of this table need more care than that. One row has to be added
+    /// before: it decides what the times are.
+    pub(super) fn plain_rows(&self, separator: Separator) -> Option<PlainRows> {
+        let is_plain = self.is_in_order && self.times.are_plain_seconds() && separator != Separator::Blanks;
+        is_plain.then(|| PlainRows { roles: self.layout.roles.clone(), separator: separator.character() })
+    }
+
+    /// Adds rows that [`PlainRows`] has read, and returns whether their times increase.
+    pub(super) fn push_plain(&mut self, rows: &[f64]) -> bool {
+        let Layout { roles, arms, .. } = &mut self.layout;
+        let known: Vec<Role> = roles.iter().filter(|role| **role != Role::Other).copied().collect();
+        let time = known.iter().position(|role| *role == Role::Time).unwrap_or_default();
+        rows.chunks_exact(known.len()).all(|row| {
+            for (role, &value) in known.iter().zip(row) {
+                match *role {
+                    Role::Joint { quantity, arm, .. } => arms[arm].of_mut(quantity).push(value),
+                    Role::Error { arm } => arms[arm].errors.push(value),
+                    Role::Time | Role::Nanoseconds | Role::Other => {}
+                }
             }
-            match field.parse::<f64>() {
-                Ok(value) if value.is_finite() => self.row.push(value),
-                _ => return false,
-            }
-        }
-        if fields.next().is_some() || !self.times.push_seconds(self.row[self.time]) {
-            return false;
-        }
-        let known = self.layout.roles.iter().filter(|role| **role != Role::Other);
-        for (role, &value) in known.zip(&self.row) {
-            match *role {
-                Role::Joint { quantity, arm, .. } => self.layout.arms[arm].of_mut(quantity).push(value),
-                Role::Error { arm } => self.layout.arms[arm].errors.push(value),
-                Role::Time | Role::Nanoseconds | Role::Other => {}
-            }
-        }
-        true
+            self.times.push_seconds(row[time])
+        })
     }
 
     /// Adds a row, which ends at a byte of the text.

@@ -6,6 +6,7 @@
 
 mod about;
 mod adjust;
+mod blocks;
 mod cdr;
 mod clock;
 mod column_map;
@@ -27,6 +28,8 @@ mod inspect;
 mod json;
 mod limits_file;
 mod lines;
+mod long_file;
+mod long_points;
 mod mcap;
 mod mcap_records;
 mod messages;
@@ -70,6 +73,7 @@ pub use inspect::{
 };
 pub use json::Json;
 pub use limits_file::LimitsFile;
+pub use long_file::LongFile;
 pub use npz::Npz;
 pub use options::{KnownJoint, ReadOptions, Reading};
 pub use read::{Source, TrajectoryReader};

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::error::{Problem, excerpt};
-use super::points::Points;
+use super::points::{POINTS, Points};
 
 /// A node of a document, and the byte at which it begins.
 #[derive(Clone, Debug)]
@@ -16,6 +16,30 @@ pub(super) enum Node<'t> {
 }
 
 impl<'t> Node<'t> {
+    /// Puts points where the first list of points stands empty.
+    pub(super) fn fill(&mut self, points: &mut Option<Box<Points>>) {
+        let inner: Vec<&mut Node<'t>> = match self {
+            Self::Map(entries, _) => {
+                let empty = entries
+                    .iter_mut()
+                    .find(|(key, node)| key == POINTS && node.text().is_ok_and(str::is_empty));
+                if let Some((_, node)) = empty
+                    && let Some(points) = points.take()
+                {
+                    *node = Self::Points(points, node.at());
+                }
+                entries.iter_mut().map(|(_, node)| node).collect()
+            }
+            Self::List(items, _) => items.iter_mut().collect(),
+            Self::Scalar(..) | Self::Points(..) => return,
+        };
+        for node in inner {
+            if points.is_some() {
+                node.fill(points);
+            }
+        }
+    }
+
     pub(super) fn at(&self) -> usize {
         match self {
             Self::Scalar(_, at) | Self::List(_, at) | Self::Map(_, at) | Self::Points(_, at) => *at,

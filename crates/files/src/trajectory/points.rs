@@ -14,6 +14,8 @@ pub(super) const POINTS: &str = "points";
 pub(super) struct Points {
     /// Where the first one begins.
     first: usize,
+    /// Whether a first point has decided what all have.
+    is_begun: bool,
     width: usize,
     times: Times,
     values: [Vec<f64>; 3],
@@ -24,16 +26,45 @@ impl Points {
     /// No points yet, of a list that begins at a byte.
     pub(super) fn new(at: usize) -> Self {
         let values = [Vec::new(), Vec::new(), Vec::new()];
-        Self { first: at, width: 0, times: Times::new(None), values, known: [true, false, false] }
+        Self {
+            first: at,
+            is_begun: false,
+            width: 0,
+            times: Times::new(None),
+            values,
+            known: [true, false, false],
+        }
     }
 
     pub(super) fn is_empty(&self) -> bool {
         self.times.len() == 0
     }
 
+    /// No points yet, of those that go on behind these.
+    pub(super) fn following(&self) -> Self {
+        let values = [Vec::new(), Vec::new(), Vec::new()];
+        Self { times: self.times.following(), values, ..*self }
+    }
+
+    /// Adds points that go on behind these, and returns whether they come after them.
+    pub(super) fn append(&mut self, other: &Self) -> bool {
+        for (values, others) in self.values.iter_mut().zip(&other.values) {
+            values.extend_from_slice(others);
+        }
+        self.times.append(&other.times)
+    }
+
+    /// Makes room for so many points.
+    pub(super) fn reserve(&mut self, points: usize) {
+        self.times.reserve(points);
+        for (values, _) in self.values.iter_mut().zip(self.known).filter(|(_, known)| *known) {
+            values.reserve_exact(points * self.width);
+        }
+    }
+
     /// Adds a point.
     pub(super) fn push(&mut self, point: &Node<'_>) -> Result<(), Problem> {
-        if self.is_empty() {
+        if !self.is_begun {
             self.begin(point)?;
         }
         let span = point.need("time_from_start")?;
@@ -60,6 +91,7 @@ impl Points {
     fn begin(&mut self, point: &Node<'_>) -> Result<(), Problem> {
         let positions = point.need(Quantity::Position.plural())?;
         self.first = positions.at();
+        self.is_begun = true;
         self.width = positions.list("a list of numbers")?.len();
         for quantity in [Quantity::Velocity, Quantity::Acceleration] {
             self.known[quantity as usize] =

@@ -27,6 +27,18 @@ pub(super) fn document(text: &str, base: usize) -> Option<Node<'_>> {
     (quick.at == text.len()).then_some(node)
 }
 
+/// Returns the points of a part of a text that begins with one of them, as those that go on behind others, and what stands behind
+/// the last; nothing where something is not certain.
+pub(super) fn points<'t>(text: &'t str, others: &Points) -> Option<(Box<Points>, &'t str)> {
+    let mut quick = Quick { text, base: 0, at: 0, depth: 0 };
+    let indent = quick.next_line()?;
+    quick.is_item().then_some(())?;
+    match quick.items(indent, Items::Points(others.following()))? {
+        Node::Points(points, _) => Some((points, &text[quick.at..])),
+        _ => None,
+    }
+}
+
 struct Quick<'t> {
     text: &'t str,
     base: usize,
@@ -144,9 +156,13 @@ impl<'t> Quick<'t> {
     }
 
     fn list(&mut self, column: usize, key: Option<&str>) -> Option<Node<'t>> {
+        let items = Items::of(key, self.place());
+        self.items(column, items)
+    }
+
+    fn items(&mut self, column: usize, mut items: Items<'t>) -> Option<Node<'t>> {
         self.deeper()?;
         let at = self.place();
-        let mut items = Items::of(key, at);
         loop {
             let start = self.at;
             self.at += 1;

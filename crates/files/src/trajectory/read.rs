@@ -9,6 +9,7 @@ use std::path::Path;
 use super::Parquet;
 use super::error::{Problem, TrajectoryError, TrajectoryErrorKind};
 use super::foreign::Foreign;
+use super::long_file::LongFile;
 #[cfg(not(feature = "parquet"))]
 use super::parquet_absent::ParquetAbsent;
 use super::quantity::Quantity;
@@ -60,6 +61,13 @@ pub trait TrajectoryReader {
     /// # Errors
     /// What is wrong with it.
     fn read(&self, source: Source<'_>, options: &ReadOptions) -> Result<Reading, Problem>;
+
+    /// Returns the same of a long file without holding its text; `None` unless the format does so, and where the file has anything in it
+    /// that needs more care: then it is [read](Self::read) as a whole, which also finds the words for what is wrong.
+    fn read_blocks(&self, file: &mut LongFile<'_>, options: &ReadOptions) -> Option<Reading> {
+        let _ = (file, options);
+        None
+    }
 }
 
 /// The formats, those with unmistakable first bytes first; the last one takes everything.
@@ -93,6 +101,9 @@ impl Trajectory {
     /// As [`Trajectory::read`], and where the options do not fit the file.
     pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Reading, TrajectoryError> {
         let path = path.as_ref();
+        if let Some(reading) = LongFile::open(path).and_then(|file| Self::in_blocks(file, options)) {
+            return Ok(reading);
+        }
         let bytes = bytes_of(path)?;
         Self::from_bytes_with(path, &bytes, options)
     }
@@ -115,15 +126,29 @@ impl Trajectory {
         options: &ReadOptions,
     ) -> Result<Reading, TrajectoryError> {
         let source = Source { path, bytes };
-        let reader =
-            READERS.iter().find(|reader| reader.knows(source)).unwrap_or(&READERS[READERS.len() - 1]);
-        let read = reader.read(source, options).and_then(|reading| adjust::adjusted(reading, options));
-        let read = read.and_then(|reading| {
-            checked(&reading.trajectory)?;
-            Ok(reading)
-        });
+        let read = reader_of(source).read(source, options);
+        let read = read.and_then(|reading| finished(reading, options));
         read.map_err(|problem| problem.within(path, source.text().unwrap_or_default()))
     }
+
+    /// The trajectory in a long file, where it can be read block by block and nothing is wrong with it.
+    pub(super) fn in_blocks(mut file: LongFile<'_>, options: &ReadOptions) -> Option<Reading> {
+        let reading = reader_of(file.source()).read_blocks(&mut file, options)?;
+        finished(reading, options).ok()
+    }
+}
+
+/// What reads a file.
+fn reader_of(source: Source<'_>) -> &'static dyn TrajectoryReader {
+    let known = READERS.iter().find(|reader| reader.knows(source));
+    *known.unwrap_or(&READERS[READERS.len() - 1])
+}
+
+/// Does to what was read what the options ask for, and checks it.
+fn finished(reading: Reading, options: &ReadOptions) -> Result<Reading, Problem> {
+    let reading = adjust::adjusted(reading, options)?;
+    checked(&reading.trajectory)?;
+    Ok(reading)
 }
 
 /// Holds what was read against what every trajectory keeps to; readers of text have said so before, with the place.

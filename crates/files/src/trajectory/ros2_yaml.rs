@@ -8,11 +8,13 @@ use super::controller::{Refusal, check_command};
 use super::error::Problem;
 use super::group::Group;
 use super::lines::write_lines;
+use super::long_file::LongFile;
 use super::messages::Messages;
+use super::points::Points;
 use super::quantity::Quantity;
 use super::read::{Source, TrajectoryReader};
-use super::yaml;
 use super::{About, Machine, ReadOptions, Reading, Recording, Trajectory, TrajectoryFormat};
+use super::{long_points, yaml};
 
 /// The line of a comment that has the machine's name.
 const MACHINE: &str = "# machine: ";
@@ -146,15 +148,27 @@ impl TrajectoryReader for Ros2Yaml {
     }
 
     fn read(&self, source: Source<'_>, options: &ReadOptions) -> Result<Reading, Problem> {
-        let text = source.text()?;
-        let comments = || text.lines().take_while(|line| line.starts_with('#'));
-        let mut messages = Messages::new(options);
-        yaml::documents(text, &mut |node| messages.take(node))?;
-        let mut reading = messages.finish(comments().find_map(|line| line.strip_prefix(MACHINE)))?;
-        let entries = comments().filter_map(|line| line.strip_prefix("# ")?.split_once(": "));
-        reading.trajectory.about = About::from_entries(entries);
-        Ok(reading)
+        read(source.text()?, options, None)
     }
+
+    fn read_blocks(&self, file: &mut LongFile<'_>, options: &ReadOptions) -> Option<Reading> {
+        let (text, points) = long_points::read(file)?;
+        read(&text, options, Some(points)).ok()
+    }
+}
+
+/// Reads documents; points that were read before stand in the first list of them that is empty.
+fn read(text: &str, options: &ReadOptions, mut points: Option<Box<Points>>) -> Result<Reading, Problem> {
+    let comments = || text.lines().take_while(|line| line.starts_with('#'));
+    let mut messages = Messages::new(options);
+    yaml::documents(text, &mut |mut node| {
+        node.fill(&mut points);
+        messages.take(node)
+    })?;
+    let mut reading = messages.finish(comments().find_map(|line| line.strip_prefix(MACHINE)))?;
+    let entries = comments().filter_map(|line| line.strip_prefix("# ")?.split_once(": "));
+    reading.trajectory.about = About::from_entries(entries);
+    Ok(reading)
 }
 
 /// Whether a text begins as a message does that is printed: with a word and a colon, or with the line between messages.

@@ -95,6 +95,8 @@ struct Exact {
 pub(super) struct Times {
     unit: Option<TimeUnit>,
     exact: Option<Exact>,
+    /// Whether a first time has decided what they are.
+    is_begun: bool,
     seconds: Vec<f64>,
     note: Option<String>,
 }
@@ -102,7 +104,7 @@ pub(super) struct Times {
 impl Times {
     /// No times yet, in a unit where it is known.
     pub(super) fn new(unit: Option<TimeUnit>) -> Self {
-        Self { unit, exact: None, seconds: Vec::new(), note: None }
+        Self { unit, exact: None, is_begun: false, seconds: Vec::new(), note: None }
     }
 
     pub(super) fn reserve(&mut self, samples: usize) {
@@ -115,8 +117,8 @@ impl Times {
 
     /// Adds a time as it is written.
     pub(super) fn push(&mut self, text: &str) -> Result<(), String> {
-        let ticks = if self.seconds.is_empty() || self.exact.is_some() { ticks(text) } else { None };
-        if self.seconds.is_empty()
+        let ticks = if !self.is_begun || self.exact.is_some() { ticks(text) } else { None };
+        if !self.is_begun
             && let Some(ticks) = ticks
         {
             self.begin(ticks);
@@ -128,9 +130,29 @@ impl Times {
         self.add(seconds)
     }
 
-    /// Adds a time \[s\] after others that were taken as they are, and returns whether it was added.
+    /// Whether there are times, and they are taken as they are written.
+    pub(super) fn are_plain_seconds(&self) -> bool {
+        self.is_begun && self.exact.is_none() && self.unit.is_none()
+    }
+
+    /// Adds a time \[s\] to [plain](Self::are_plain_seconds) ones, and returns whether it comes after them.
     pub(super) fn push_seconds(&mut self, time: f64) -> bool {
-        self.exact.is_none() && self.unit.is_none() && self.add(time).is_ok()
+        self.add(time).is_ok()
+    }
+
+    /// No times yet, of those that go on behind these.
+    pub(super) fn following(&self) -> Self {
+        Self { seconds: Vec::new(), note: None, ..*self }
+    }
+
+    /// Adds times that go on behind these, and returns whether they come after them.
+    pub(super) fn append(&mut self, other: &Self) -> bool {
+        let is_later = match (self.seconds.last(), other.seconds.first()) {
+            (Some(last), Some(first)) => first > last,
+            _ => true,
+        };
+        self.seconds.extend_from_slice(&other.seconds);
+        is_later
     }
 
     /// Adds a time of a format that has numbers.
@@ -141,7 +163,7 @@ impl Times {
 
     /// Adds a time of whole nanoseconds.
     pub(super) fn push_nanoseconds(&mut self, nanoseconds: i128) -> Result<(), String> {
-        if self.seconds.is_empty() {
+        if !self.is_begun {
             let (base, note) = start(nanoseconds, TICKS);
             self.exact = Some(Exact { base, per_second: TICKS });
             self.note = note;
@@ -169,6 +191,7 @@ impl Times {
         match self.seconds.last() {
             Some(&before) if seconds <= before => Err(super::read::not_later(before, seconds)),
             _ => {
+                self.is_begun = true;
                 self.seconds.push(seconds);
                 Ok(())
             }
