@@ -1,5 +1,6 @@
 //! `kinstep export`: saved results in other formats.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -213,7 +214,9 @@ pub(super) fn in_order_of(trajectory: &mut Trajectory, stage: &Stage) {
     for arm in &mut trajectory.arms {
         if let Some(staged) = stage.arm(&arm.name) {
             let order: Vec<&str> = staged.chain.joints().iter().map(|joint| joint.name.as_str()).collect();
-            *arm = arm.with_joints(&order);
+            if let Cow::Owned(ordered) = arm.with_joints(&order) {
+                *arm = ordered;
+            }
         }
     }
 }

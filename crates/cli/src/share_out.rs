@@ -135,5 +135,5 @@ fn part(one: &ArmTrajectory, arm: &Arm, followers: &[String]) -> Result<ArmTraje
         return Err(Failure::new(Exit::Robot, message));
     }
     joints.extend(followers.iter().map(String::as_str));
-    Ok(ArmTrajectory { name: arm.name().to_owned(), ..one.with_joints(&joints) })
+    Ok(ArmTrajectory { name: arm.name().to_owned(), ..one.with_joints(&joints).into_owned() })
 }

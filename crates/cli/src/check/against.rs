@@ -1,5 +1,6 @@
 //! What a trajectory is held against: the robots that move, their limits, and the paths that they should follow.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use super::super::arguments::CheckArguments;
@@ -14,7 +15,7 @@ use kinstep::planner::Arm;
 use kinstep::robot::{Joint, Limits, Robot};
 use kinstep_files::scenario::{RelationSpec, ScenarioText};
 use kinstep_files::trajectory::{
-    ArmTrajectory, Course, Interpolation, Met, Stage, Straying, TimeFigures, Trajectory, units,
+    ArmTrajectory, Course, Interpolation, JointFigures, Met, Stage, Straying, TimeFigures, Trajectory, units,
 };
 
 pub(super) struct Against {
@@ -149,9 +150,9 @@ impl Against {
         let mut failures = sentences::of_clock(&clock);
         failures.extend(course.iter().flat_map(|course| sentences::of_course(*course)));
         let mut arms = Vec::new();
-        for (arm, moved) in self.trajectory.arms.iter().zip(&self.moved) {
-            let figures = arm.inspect(times, &moved.limits, moved.interpolation);
-            let error = course.and_then(|course| moved.worst_error(course, arm, times));
+        let (figures, errors) = self.inspected(course);
+        let all = self.trajectory.arms.iter().zip(&self.moved).zip(figures).zip(errors);
+        for (((arm, moved), figures), error) in all {
             failures.extend(sentences::of_arm(&arm.name, &figures, times));
             failures
                 .extend(moved.straying.iter().map(|straying| sentences::of_follower(&arm.name, straying)));
@@ -173,10 +174,25 @@ impl Against {
         }
     }
 
+    /// What the joints of every arm do, and the worst error of its task: the one while the other.
+    fn inspected(&self, course: Option<Course>) -> (Vec<Vec<JointFigures>>, Vec<Option<Met>>) {
+        let Trajectory { times, arms, .. } = &self.trajectory;
+        let mut figures = vec![Vec::new(); arms.len()];
+        let errors = rayon::in_place_scope(|scope| {
+            for ((arm, moved), figures) in arms.iter().zip(&self.moved).zip(&mut figures) {
+                let (limits, interpolation) = (&moved.limits, moved.interpolation);
+                scope.spawn(move |_| *figures = arm.inspect(times, limits, interpolation));
+            }
+            let error = |(arm, moved): (&ArmTrajectory, &Moved)| moved.worst_error(course?, arm, times);
+            arms.iter().zip(&self.moved).map(error).collect()
+        });
+        (figures, errors)
+    }
+
     /// The part of the paths that is done, where there are paths.
     fn course(&self) -> Option<Course> {
         let arms = self.trajectory.arms.iter().zip(&self.moved);
-        let paths: Vec<(ArmTrajectory, &Arm)> = arms
+        let paths: Vec<(Cow<'_, ArmTrajectory>, &Arm)> = arms
             .filter_map(|(arm, moved)| moved.own_path().map(|path| (own_joints(arm, path), path)))
             .collect();
         let duration = self.duration.filter(|_| !paths.is_empty())?;
@@ -197,7 +213,7 @@ impl Moved {
 }
 
 /// An arm's own joints, in the order of its chain.
-fn own_joints(arm: &ArmTrajectory, path: &Arm) -> ArmTrajectory {
+fn own_joints<'a>(arm: &'a ArmTrajectory, path: &Arm) -> Cow<'a, ArmTrajectory> {
     let joints: Vec<&str> = path.chain().joints().iter().map(|joint| joint.name.as_str()).collect();
     arm.with_joints(&joints)
 }

@@ -1,5 +1,7 @@
 //! The samples of all arms on one clock.
 
+use std::borrow::Cow;
+
 use nalgebra::Vector6;
 
 use super::About;
@@ -48,21 +50,24 @@ impl ArmTrajectory {
 
     /// Returns the same with those of its joints that are named, in the order of the names.
     #[must_use]
-    pub fn with_joints(&self, joints: &[&str]) -> Self {
+    pub fn with_joints(&self, joints: &[&str]) -> Cow<'_, Self> {
         let place = |name: &&str| self.joints.iter().position(|own| own == name);
         let places: Vec<usize> = joints.iter().filter_map(place).collect();
+        if places.iter().copied().eq(0..self.joints.len()) {
+            return Cow::Borrowed(self);
+        }
         let taken = |values: &[f64]| -> Vec<f64> {
             let rows = values.chunks_exact(self.joints.len().max(1));
             rows.flat_map(|row| places.iter().map(|&place| row[place])).collect()
         };
-        Self {
+        Cow::Owned(Self {
             name: self.name.clone(),
             joints: places.iter().map(|&place| self.joints[place].clone()).collect(),
             positions: taken(&self.positions),
             velocities: taken(&self.velocities),
             accelerations: taken(&self.accelerations),
             errors: self.errors.clone(),
-        }
+        })
     }
 
     /// The joint velocities [rad/s or m/s] of sample `n`, where they are known.

@@ -1,5 +1,7 @@
 //! Whether a trajectory does the path that it should, from where to where, and how closely.
 
+use std::borrow::Cow;
+
 use super::interpolant::{Interpolation, Knots};
 use super::met::Met;
 use crate::trajectory::ArmTrajectory;
@@ -26,7 +28,7 @@ impl Course {
     /// path, or else of a clock that was started elsewhere: whichever brings the arms nearer to their paths.
     ///
     /// Every arm comes with the one whose path it should follow, and has the same joints in the same order.
-    pub fn of(times: &[f64], arms: &[(ArmTrajectory, &Arm)], duration: f64) -> Self {
+    pub fn of(times: &[f64], arms: &[(Cow<'_, ArmTrajectory>, &Arm)], duration: f64) -> Self {
         let (first, last) = (times[0], times[times.len() - 1]);
         let way = arms.iter().map(|(_, path)| path.lead_duration()).fold(0.0, f64::max);
         let duration = way + duration;
@@ -64,7 +66,13 @@ impl Course {
         times: &[f64],
         interpolation: Interpolation,
     ) -> Met {
-        let knots: Vec<Knots<'_>> = (0..arm.joints.len()).map(|joint| Knots::of(arm, joint, times)).collect();
+        let parts_of = |n: usize| {
+            let gap = times.get(n + 1).map_or(0.0, |next| next - times[n]);
+            (gap * PARTS / self.duration).ceil().min(PARTS)
+        };
+        let is_dense = (0..times.len()).all(|n| !(parts_of(n) > 1.0));
+        let joints = if is_dense { 0 } else { arm.joints.len() };
+        let knots: Vec<Knots<'_>> = (0..joints).map(|joint| Knots::of(arm, joint, times)).collect();
         let own_times: Vec<f64> = times.iter().map(|t| t - self.origin).collect();
         let errors = arm.task_errors(path, &own_times);
         let first =
@@ -78,8 +86,7 @@ impl Course {
         };
         for n in first..times.len() {
             take(errors[n].norm(), times[n]);
-            let gap = if n + 1 < times.len() { times[n + 1] - times[n] } else { 0.0 };
-            let parts = (gap * PARTS / self.duration).ceil().min(PARTS);
+            let parts = parts_of(n);
             if parts > 1.0 {
                 let segments: Vec<_> =
                     knots.iter().map(|knots| knots.segments(interpolation, n)[0]).collect();
@@ -100,10 +107,10 @@ impl Course {
     }
 
     fn worst_at_samples(&self, arm: &ArmTrajectory, path: &Arm, times: &[f64]) -> f64 {
-        let mut scratch = path.chain().scratch();
-        let lasting = times.iter().enumerate().filter(|(_, t)| self.lasts(**t));
-        let errors =
-            lasting.map(|(n, t)| path.task_error(t - self.origin, arm.position(n), &mut scratch).norm());
-        errors.fold(0.0, |worst, error| if error <= worst { worst } else { error })
+        let own_times: Vec<f64> = times.iter().map(|t| t - self.origin).collect();
+        let errors = arm.task_errors(path, &own_times);
+        let lasting =
+            errors.iter().zip(times).filter(|(_, t)| self.lasts(**t)).map(|(error, _)| error.norm());
+        lasting.fold(0.0, |worst, error| if error <= worst { worst } else { error })
     }
 }

@@ -1,5 +1,7 @@
 //! What one joint does along a trajectory.
 
+use rayon::prelude::*;
+
 use super::continuity::{Disagreement, Jump, disagreements, jumps};
 use super::crossing::{Beyond, Crossing};
 use super::interpolant::{Interpolation, Knots};
@@ -68,15 +70,16 @@ impl ArmTrajectory {
         limits: &[Limits],
         interpolation: Interpolation,
     ) -> Vec<JointFigures> {
-        let knots: Vec<Knots<'_>> =
-            (0..self.joints.len()).map(|joint| Knots::of(self, joint, times)).collect();
+        let joints = || (0..self.joints.len()).into_par_iter();
+        let knots = |joint: usize| Knots::of(self, joint, times);
         // A joint that hardly moves does not show the step of its encoder; those beside it do.
-        let step = knots.iter().map(|knots| encoder(&knots.positions)).fold(0.0, f64::max);
-        let figures = |(joint, knots): (usize, Knots<'_>)| {
-            let knots = knots.known_to(step);
+        let steps: Vec<f64> = joints().map(|joint| encoder(&knots(joint).positions)).collect();
+        let step = steps.into_iter().fold(0.0, f64::max);
+        let figures = |joint: usize| {
+            let knots = knots(joint).known_to(step);
             Inspection::of(&knots, interpolation, &limits[joint]).figures(&self.joints[joint])
         };
-        knots.into_iter().enumerate().map(figures).collect()
+        joints().map(figures).collect()
     }
 }
 

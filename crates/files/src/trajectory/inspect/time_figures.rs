@@ -33,10 +33,11 @@ impl TimeFigures {
         let times = &trajectory.times;
         let gap = |n: usize| Met { value: times[n] - times[n - 1], t: times[n] };
         let mut gaps: Vec<Met> = (1..times.len()).map(gap).collect();
-        gaps.sort_by(|a, b| a.value.total_cmp(&b.value));
-        let nothing = Met::default();
-        let at = |index: usize| gaps.get(index).copied().unwrap_or(nothing);
-        let (first, usual, last) = (at(0), at(gaps.len() / 2), at(gaps.len().saturating_sub(1)));
+        let order = |a: &Met, b: &Met| a.value.total_cmp(&b.value);
+        let (first, last) = (gaps.iter().copied().min_by(order), gaps.iter().copied().max_by(order));
+        let [first, last] = [first, last].map(Option::unwrap_or_default);
+        let middle = gaps.len() / 2;
+        let usual = if gaps.is_empty() { first } else { *gaps.select_nth_unstable_by(middle, order).1 };
         // Times carry the rounding of the last of them, and files may have rounded to nanoseconds.
         let rounding = 4.0 * f64::EPSILON * times.last().copied().unwrap_or(0.0).abs() + 2e-9;
         let is_even = last.value - first.value <= UNEVEN * usual.value + rounding;
