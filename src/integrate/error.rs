@@ -65,6 +65,55 @@ pub enum IntegrateError {
         /// The row that corrects.
         corrector: String,
     },
+    /// A tolerance that is negative, infinite or NaN.
+    #[error("{what} is {text}; it must be a finite number, zero or more")]
+    Tolerance {
+        /// Which one.
+        what: &'static str,
+        /// What was given.
+        text: String,
+    },
+    /// Neither a relative nor an absolute tolerance.
+    #[error(
+        "the relative and an absolute tolerance are both zero, so that no error is allowed; give one of them"
+    )]
+    NoTolerance,
+    /// A range of time without length.
+    #[error(
+        "the range of time goes from {start} to {end}; it must have an end other than its start, and both must be finite"
+    )]
+    Range {
+        /// Where it starts.
+        start: String,
+        /// Where it ends.
+        end: String,
+    },
+    /// A time at which the state is asked for, beyond the range.
+    #[error("the state at t = {t} is asked for, beyond the range from {start} to {end}")]
+    SampleTime {
+        /// The time.
+        t: String,
+        /// Where the range starts.
+        start: String,
+        /// Where it ends.
+        end: String,
+    },
+    /// An initial state that is not finite.
+    #[error("entry {index} of the initial state is {text}; it must be a finite number")]
+    InitialState {
+        /// Which entry, from zero.
+        index: usize,
+        /// What was given.
+        text: String,
+    },
+    /// A right-hand side of two parts where only one is taken.
+    #[error(
+        "`{id}` takes a right-hand side of one part only; add the two, or choose an implicit-explicit formula"
+    )]
+    TwoParts {
+        /// The method.
+        id: String,
+    },
     /// A row without a step.
     #[error("formula `{id}` has no step: it needs at least one past state")]
     NoStep {

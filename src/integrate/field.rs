@@ -70,6 +70,14 @@ pub trait Field<T> {
     fn solve(&mut self, _t: T, _next: Affine<'_, T>, _x: &mut [T]) -> Solved {
         Solved::NotOffered
     }
+
+    /// Writes the derivatives `df_i/dx_j` at `(t, x)` to `jacobian[i * dimension + j]`, and returns whether it did.
+    ///
+    /// Unless overridden it does not, and differences of [`evaluate`](Field::evaluate) take its place where an implicit step is solved
+    /// by Newton's method.
+    fn jacobian(&mut self, _t: T, _x: &[T], _jacobian: &mut [T]) -> bool {
+        false
+    }
 }
 
 /// A plain ODE `x' = f(t, x)` given by a closure `|t, x, derivative|`.

@@ -16,7 +16,11 @@
 //! | [`StepController`] | whether a step is accepted, and how long the next one is |
 //!
 //! [`Multistep::new`] takes an explicit formula; [`Multistep::of_method`] takes any method.
+//!
+//! [`Solver`] solves a problem from its start to its end: within tolerances, by formulas of varying steps and order
+//! ([`VariableOrder`]), or by any method in equal steps; with output times, events and dense output.
 
+mod adaptive;
 mod affine;
 mod coefficients;
 mod controller;
@@ -26,11 +30,13 @@ mod field;
 mod history;
 mod method;
 mod solve;
+mod solver;
 mod starter;
 mod status;
 mod stepper;
 
 pub use crate::math::{Elementary, Scalar};
+pub use adaptive::{Family, SolveStatus, Statistics, VariableOrder};
 pub use affine::{Affine, Solved};
 pub use coefficients::{Coefficients, RatioCoefficients, RatioRow, RowKind};
 pub use controller::{Attempt, Decision, FixedStep, StepController};
@@ -39,6 +45,7 @@ pub use error::IntegrateError;
 pub use field::{Field, Ode, Parts};
 pub use method::{Method, Mode};
 pub use solve::FixedPoint;
+pub use solver::{Direction, Event, Happening, Sample, Solution, Solver, StepRecord};
 pub use starter::{Starter, StarterKind, Tableau};
 pub use status::Status;
 pub use stepper::Multistep;

@@ -7,7 +7,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 /// The numbers that states are made of: `f64`, `f32`, or an extended type of your own.
 ///
 /// Deliberately smaller than nalgebra's `RealField`, so that a double-double or an arbitrary-precision type needs
-/// four methods and a number to take part in an order study.
+/// six methods and a number to take part in an order study.
 ///
 /// ```
 /// use kinstep::math::Scalar;
@@ -42,6 +42,12 @@ pub trait Scalar:
 
     /// Whether the number is neither infinite nor NaN.
     fn is_finite(self) -> bool;
+
+    /// The nearest double, for norms and for decisions that need no more.
+    fn to_f64(self) -> f64;
+
+    /// The nearest number to a double.
+    fn from_f64(value: f64) -> Self;
 }
 
 impl Scalar for f64 {
@@ -61,6 +67,14 @@ impl Scalar for f64 {
 
     fn is_finite(self) -> bool {
         f64::is_finite(self)
+    }
+
+    fn to_f64(self) -> f64 {
+        self
+    }
+
+    fn from_f64(value: f64) -> Self {
+        value
     }
 }
 
@@ -82,6 +96,14 @@ impl Scalar for f32 {
     fn is_finite(self) -> bool {
         f32::is_finite(self)
     }
+
+    fn to_f64(self) -> f64 {
+        self.into()
+    }
+
+    fn from_f64(value: f64) -> Self {
+        value as f32
+    }
 }
 
 impl Scalar for DoubleDouble {
@@ -101,6 +123,14 @@ impl Scalar for DoubleDouble {
 
     fn is_finite(self) -> bool {
         self.is_finite()
+    }
+
+    fn to_f64(self) -> f64 {
+        self.to_f64()
+    }
+
+    fn from_f64(value: f64) -> Self {
+        value.into()
     }
 }
 

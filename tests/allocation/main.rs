@@ -1,4 +1,5 @@
 //! What may not allocate, under an allocator that counts.
 
+mod integrate;
 mod planner;
 mod robot;

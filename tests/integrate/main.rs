@@ -1,3 +1,4 @@
 //! The stepper with methods, steps and fields of one's own.
 
 mod methods;
+mod solver;

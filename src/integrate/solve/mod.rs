@@ -2,6 +2,10 @@
 //!
 //! One file for each way of solving.
 
+mod error_norm;
 mod fixed_point;
+mod newton;
 
+pub(super) use error_norm::ErrorNorm;
 pub use fixed_point::FixedPoint;
+pub(super) use newton::Newton;
