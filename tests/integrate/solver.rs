@@ -187,10 +187,7 @@ fn any_method_of_the_table_solves_in_equal_steps() {
             errors.map(f64::abs).into_iter().fold(0.0, f64::max)
         };
         let (coarse, fine) = (error(100.0), error(200.0));
-        assert!(
-            fine < 1e-4 && fine < coarse / 2_f64.powf(order - 0.9),
-            "{order} {coarse:e} {fine:e}"
-        );
+        assert!(fine < 1e-4 && fine < coarse / 2_f64.powf(order - 0.9), "{order} {coarse:e} {fine:e}");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::parse::{Comparison, Node};
 use crate::integrate::field::Field;
-use crate::math::{DoubleDouble, Elementary, Function};
+use crate::math::{DoubleDouble, Dual, Elementary, Function};
 
 #[derive(Clone, Copy, Debug)]
 enum Operation<T> {
@@ -138,6 +138,8 @@ pub struct EquationField<T> {
     pub(super) definitions: Vec<Compiled<T>>,
     pub(super) derivatives: Vec<Compiled<T>>,
     pub(super) switches: Vec<Compiled<T>>,
+    pub(super) events: Vec<Compiled<T>>,
+    pub(super) duals: Duals<T>,
     pub(super) values: Vec<T>,
     pub(super) stack: Vec<T>,
 }
@@ -151,6 +153,40 @@ impl<T: Elementary> Field<T> for EquationField<T> {
         self.go_to(t, x);
         for (derivative, out) in self.derivatives.iter().zip(f) {
             *out = derivative.value(&self.values, &mut self.stack);
+        }
+    }
+
+    /// Exact, by forward-mode automatic differentiation.
+    fn jacobian(&mut self, t: T, x: &[T], jacobian: &mut [T]) -> bool {
+        self.duals.write_jacobian(t, x, jacobian);
+        true
+    }
+}
+
+/// The right-hand side in numbers that carry derivatives.
+#[derive(Clone, Debug)]
+pub(super) struct Duals<T> {
+    pub(super) definitions: Vec<Compiled<Dual<T>>>,
+    pub(super) derivatives: Vec<Compiled<Dual<T>>>,
+    pub(super) values: Vec<Dual<T>>,
+    pub(super) stack: Vec<Dual<T>>,
+}
+
+impl<T: Elementary> Duals<T> {
+    fn write_jacobian(&mut self, t: T, x: &[T], jacobian: &mut [T]) {
+        let dimension = x.len();
+        let Self { definitions, derivatives, values, stack } = self;
+        values[0] = Dual::constant(t);
+        for j in 0..dimension {
+            for (i, &x) in x.iter().enumerate() {
+                values[1 + i] = if i == j { Dual::variable(x) } else { Dual::constant(x) };
+            }
+            for (k, definition) in definitions.iter().enumerate() {
+                values[1 + dimension + k] = definition.value(values, stack);
+            }
+            for (i, derivative) in derivatives.iter().enumerate() {
+                jacobian[i * dimension + j] = derivative.value(values, stack).derivative;
+            }
         }
     }
 }
@@ -167,6 +203,15 @@ impl<T: Elementary> EquationField<T> {
         for (switch, out) in self.switches.iter().zip(quantities) {
             *out = switch.value(&self.values, &mut self.stack);
         }
+    }
+
+    /// The value at `t` and `x` of an event's expression, in the order of [`Equations::events`](super::Equations::events).
+    ///
+    /// # Panics
+    /// If there is no such event, or `x` has another length.
+    pub fn event(&mut self, event: usize, t: T, x: &[T]) -> T {
+        self.go_to(t, x);
+        self.events[event].value(&self.values, &mut self.stack)
     }
 
     /// Gives every variable and definition its value.

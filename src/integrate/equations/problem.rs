@@ -1,8 +1,9 @@
 //! An initial value problem: equations, initial values and, where it is known, the solution.
 
-use super::compiled::{Compiled, EquationField};
+use super::compiled::{Compiled, Duals, EquationField};
 use super::parse::{Meaning, Node, Switch, parse};
-use crate::math::{Elementary, Function};
+use crate::math::{Dual, Elementary, Function};
+use num_traits::Zero;
 use std::collections::HashSet;
 use thiserror::Error;
 
@@ -22,13 +23,15 @@ pub struct EquationText {
     pub initial: Vec<String>,
     /// The solution as a function of t, or nothing: `x = expression`.
     pub exact: Vec<String>,
+    /// What may happen, where an expression crosses zero: `name: expression`.
+    pub events: Vec<String>,
 }
 
 /// What is wrong with a line of a problem.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{message}")]
 pub struct EquationError {
-    /// Which list: `parameters`, `where`, `equations`, `initial` or `exact`.
+    /// Which list: `parameters`, `where`, `equations`, `initial`, `exact` or `events`.
     pub list: &'static str,
     /// Which line of it, from 0; nothing where the list as a whole is meant.
     pub line: Option<usize>,
@@ -62,6 +65,7 @@ pub struct Equations {
     initial: Vec<Node>,
     exact: Option<Vec<Node>>,
     switches: Vec<Switch>,
+    events: Vec<(String, Node)>,
 }
 
 impl Equations {
@@ -101,7 +105,8 @@ impl Equations {
         } else {
             Some(names.for_unknowns("exact", &text.exact, &unknowns, 1)?)
         };
-        Ok(Self { unknowns, definitions, derivatives, initial, exact, switches })
+        let events = names.events(&text.events)?;
+        Ok(Self { unknowns, definitions, derivatives, initial, exact, switches, events })
     }
 
     /// The unknowns, in the order of the entries of a state.
@@ -120,6 +125,11 @@ impl Equations {
         self.switches.iter().map(|switch| switch.text.as_str())
     }
 
+    /// The names of the events, in their order; [`EquationField::event`] has the values whose zeros they are.
+    pub fn events(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.events.iter().map(|(name, _)| name.as_str())
+    }
+
     /// The right-hand side.
     pub fn field<T: Elementary>(&self) -> EquationField<T> {
         let dimension = self.unknowns.len();
@@ -128,6 +138,13 @@ impl Equations {
             definitions: self.definitions.iter().map(Compiled::of).collect(),
             derivatives: self.derivatives.iter().map(Compiled::of).collect(),
             switches: self.switches.iter().map(|switch| Compiled::of(&switch.quantity)).collect(),
+            events: self.events.iter().map(|(_, node)| Compiled::of(node)).collect(),
+            duals: Duals {
+                definitions: self.definitions.iter().map(Compiled::of).collect(),
+                derivatives: self.derivatives.iter().map(Compiled::of).collect(),
+                values: vec![Dual::zero(); 1 + dimension + self.definitions.len()],
+                stack: Vec::new(),
+            },
             values: vec![T::zero(); 1 + dimension + self.definitions.len()],
             stack: Vec::new(),
         }
@@ -254,6 +271,25 @@ impl Names {
         })
     }
 
+    /// Reads events, `name: expression`.
+    fn events(&self, text: &[String]) -> Result<Vec<(String, Node)>, EquationError> {
+        let list = "events";
+        let mut events: Vec<(String, Node)> = Vec::new();
+        for (line, text) in text.iter().enumerate() {
+            let refuse = |message: String| EquationError { list, line: Some(line), column: Some(1), message };
+            let form = || refuse(format!("\"{text}\" is not of the form `name: expression`"));
+            let (before, expression) = text.split_once(':').ok_or_else(form)?;
+            let name = Some(before.trim()).filter(|name| !name.is_empty()).ok_or_else(form)?;
+            if events.iter().any(|(known, _)| known == name) {
+                return Err(refuse(format!("there are two events \"{name}\"; call one of them otherwise")));
+            }
+            let expression = Expression { text: expression, start: before.chars().count() + 1 };
+            let (node, _) = self.read(list, line, expression, self.variables.len())?;
+            events.push((name.to_owned(), node));
+        }
+        Ok(events)
+    }
+
     /// Reads one expression for every unknown, in their order, whatever order the lines have.
     fn for_unknowns(
         &self,
@@ -306,7 +342,7 @@ mod tests {
             definitions: lines(&["s = x*x", "s2 = s + 1"]),
             equations: lines(&[equation]),
             initial: lines(&["x = sqrt(2)"]),
-            exact: Vec::new(),
+            ..EquationText::default()
         })
     }
 
@@ -407,6 +443,48 @@ mod tests {
             let off = (f[0] - known).to_f64().abs() / known.to_f64().abs().max(1.0);
             assert!(off < 1e-30, "{text}: {off:e}");
         }
+    }
+
+    #[test]
+    fn events_are_zeros_of_expressions_and_refused_like_equations() {
+        let with = |events: &[&str]| {
+            Equations::parse(&EquationText {
+                equations: lines(&["x' = u", "u' = -1"]),
+                definitions: lines(&["half = x/2"]),
+                initial: lines(&["x = 0", "u = 1"]),
+                events: lines(events),
+                ..EquationText::default()
+            })
+        };
+        let equations = with(&["ground: x", "low: half - t"]).unwrap();
+        assert_eq!(equations.events().collect::<Vec<_>>(), ["ground", "low"]);
+        assert_eq!(equations.field().event(1, 1.0, &[3.0, 0.0]), 0.5);
+        for (event, column, reason) in [
+            ("ground", 1, "not of the form `name: expression`"),
+            (": x", 1, "not of the form"),
+            ("ground: y", 9, "\"y\" means nothing here; known are t, x, u, half"),
+            ("low: x", 1, "two events \"low\""),
+        ] {
+            let error = with(&["low: x", event]).unwrap_err();
+            assert!(error.message.contains(reason), "{error}");
+            assert_eq!((error.list, error.line, error.column), ("events", Some(1), Some(column)));
+        }
+    }
+
+    #[test]
+    fn the_jacobian_is_exact() {
+        let equations = Equations::parse(&EquationText {
+            definitions: lines(&["r = x*y"]),
+            equations: lines(&["x' = r^1.5 + t", "y' = sin(x)*exp(-y) + max(x, y)"]),
+            initial: lines(&["x = 1", "y = 1"]),
+            ..EquationText::default()
+        });
+        let (x, y) = (0.7_f64, 0.4_f64);
+        let mut jacobian = [0.0; 4];
+        assert!(equations.unwrap().field().jacobian(0.3, &[x, y], &mut jacobian));
+        let root = 1.5 * (x * y).sqrt();
+        let exact = [root * y, root * x, x.cos() * (-y).exp() + 1.0, -x.sin() * (-y).exp()];
+        assert!(jacobian.iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-14), "{jacobian:?}");
     }
 
     #[test]

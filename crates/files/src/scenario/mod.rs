@@ -61,5 +61,7 @@ pub use relation_spec::RelationSpec;
 pub use robot_edits::{calibrated, limited, tool_name};
 pub use robots::RobotSource;
 pub use start_pose::{OnPath, StartPose, TipPose};
-pub use study_spec::{MeasureKind, Precision, ProblemSpec, StudySpec};
+pub use study_spec::{
+    CrossingDirection, EventSpec, EventTable, MeasureKind, Precision, ProblemSpec, ReferenceSpec, StudySpec,
+};
 pub use time_law_spec::TimeLawSpec;

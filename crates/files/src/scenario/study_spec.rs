@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::error::{ErrorKind, ScenarioError};
 use super::key_path::KeyPath;
 use super::model::Scenario;
-use kinstep::integrate::{EquationText, Equations};
+use kinstep::integrate::{Direction, EquationText, Equations};
 use kinstep::kind::Real;
 
 /// The most rungs of a ladder.
@@ -38,6 +38,95 @@ pub struct ProblemSpec {
     /// The solution as a function of t, where it is known: "x = cos(t)".
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub exact: Vec<String>,
+    /// What may happen, where an expression crosses zero, for `kinstep ode`: "ground: y", or { event = "ground: y", direction =
+    /// "falling", terminal = true }.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<EventSpec>,
+    /// A state that is known from elsewhere, for `kinstep ode`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference: Option<ReferenceSpec>,
+}
+
+/// Something that happens where an expression crosses zero.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(
+    untagged,
+    expecting = "\"name: expression\", or a table with `event` and, where needed, `direction` and `terminal`"
+)]
+pub enum EventSpec {
+    /// In either direction, without an end: "name: expression".
+    Plain(String),
+    /// With more to say.
+    Table(EventTable),
+}
+
+/// An event with its direction, and whether it ends the solution.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct EventTable {
+    /// The name and the expression: "name: expression".
+    pub event: String,
+    /// In which direction the expression crosses zero. Default: any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub direction: Option<CrossingDirection>,
+    /// Whether the solution ends there. Default: no.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub terminal: bool,
+}
+
+/// In which direction zero is crossed as time goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum CrossingDirection {
+    /// In either.
+    Any,
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
+}
+
+/// A state at a time, and where it is from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceSpec {
+    /// The time.
+    pub t: Real,
+    /// The unknowns then, in the order of the equations.
+    pub x: Vec<Real>,
+    /// Where the numbers are from.
+    pub source: String,
+}
+
+impl EventSpec {
+    /// The name and the expression.
+    pub fn text(&self) -> &str {
+        match self {
+            Self::Plain(text) => text,
+            Self::Table(table) => &table.event,
+        }
+    }
+
+    /// In which direction zero is crossed.
+    pub fn direction(&self) -> Direction {
+        match self {
+            Self::Plain(_) => Direction::Any,
+            Self::Table(table) => match table.direction {
+                None | Some(CrossingDirection::Any) => Direction::Any,
+                Some(CrossingDirection::Rising) => Direction::Rising,
+                Some(CrossingDirection::Falling) => Direction::Falling,
+            },
+        }
+    }
+
+    /// Whether the solution ends there.
+    pub fn is_terminal(&self) -> bool {
+        matches!(self, Self::Table(EventTable { terminal: true, .. }))
+    }
 }
 
 /// How `kinstep order` studies the scenario: the gaps, the rows, what runs are compared with, and how strictly.
@@ -120,6 +209,7 @@ impl ProblemSpec {
             equations: self.equations.clone(),
             initial: self.initial.clone(),
             exact: self.exact.clone(),
+            events: self.events.iter().map(|event| event.text().to_owned()).collect(),
         };
         Equations::parse(&text).map_err(|error| {
             let list = KeyPath::dotted("problem").key(error.list);
