@@ -33,7 +33,7 @@ pub trait Field<T> {
     ///
     /// Unless overridden it returns [`Solved::NotOffered`], and the stepper iterates the equation itself
     /// ([`FixedPoint`](super::FixedPoint)), which converges as long as `first` and `second` times the Lipschitz constants of
-    /// `f` and `g` stay below one: not for stiff problems. A field that can solve exactly, or by an iteration of its own, does
+    /// `f` and `g` stay below one. Where it does not, and `second` is zero, Newton's method takes over. A field that can solve exactly, or by an iteration of its own, does
     /// so here. An override should not allocate, returns [`Solved::NotConverged`] where it finds nothing, and does not panic.
     ///
     /// ```

@@ -15,6 +15,7 @@ mod formula_list;
 mod formula_plot;
 mod formula_schema;
 mod formula_search;
+mod ode;
 mod order;
 mod output;
 mod paint;
@@ -79,6 +80,7 @@ fn dispatch(arguments: &Arguments, output: &mut Output) -> Result<Exit, Failure>
     match &arguments.command {
         Command::Plan(command) => plan::run(command, own, output),
         Command::Plot(command) => plot::run(command, output),
+        Command::Ode(command) => ode::run(command, own, output),
         Command::Order(command) => order::run(command, own, output),
         Command::Reproduce(command) => reproduce::run(command, output),
         Command::Formula(command) => formula::run(command, own, output),

@@ -84,7 +84,7 @@ pub(super) fn run(
 }
 
 /// A file, or else a built-in problem.
-fn scenario_text(name: &str, set: &[String]) -> Result<ScenarioText, Failure> {
+pub(super) fn scenario_text(name: &str, set: &[String]) -> Result<ScenarioText, Failure> {
     let file = Path::new(name);
     let mut text = match suite::text(name) {
         Some(problem) if !file.exists() => ScenarioText::parse(problem)?,
@@ -163,12 +163,17 @@ fn with_warnings(studied: &Studied) -> Value {
 }
 
 /// The built-in problems, and what they are.
-fn list(output: &mut Output) -> Result<Exit, Failure> {
+pub(super) fn problems() -> Result<Vec<(&'static str, String)>, Failure> {
     let mut problems = Vec::new();
     for name in suite::names() {
         let scenario = ScenarioText::parse(suite::text(name).unwrap_or_default())?.scenario()?;
         problems.push((name, scenario.problem.and_then(|problem| problem.source).unwrap_or_default()));
     }
+    Ok(problems)
+}
+
+fn list(output: &mut Output) -> Result<Exit, Failure> {
+    let problems = problems()?;
     if output.wants_json() {
         let problems: Vec<Value> =
             problems.iter().map(|(name, source)| json!({ "name": name, "source": source })).collect();

@@ -35,6 +35,16 @@ impl ErrorNorm {
         Ok(Self { relative, absolute: absolute.to_vec(), weights: vec![0.0; dimension] })
     }
 
+    /// A norm that [allows](Self::allow) all components the same.
+    pub(in crate::integrate) fn even(dimension: usize) -> Self {
+        Self { relative: 0.0, absolute: vec![1.0], weights: vec![1.0; dimension] }
+    }
+
+    /// Allows errors of this size in all components.
+    pub(in crate::integrate) fn allow(&mut self, error: f64) {
+        self.weights.fill(1.0 / error);
+    }
+
     /// Weighs errors by the size of a state.
     pub(in crate::integrate) fn weigh_by<T: Scalar>(&mut self, state: &[T]) {
         let last = self.absolute.len() - 1;

@@ -4,8 +4,10 @@
 
 mod error_norm;
 mod fixed_point;
+mod iteration;
 mod newton;
 
 pub(super) use error_norm::ErrorNorm;
 pub use fixed_point::FixedPoint;
+pub(super) use iteration::Iteration;
 pub(super) use newton::Newton;

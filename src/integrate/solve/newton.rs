@@ -11,6 +11,10 @@ const NEAR: f64 = 0.1;
 const SLOWEST: f64 = 0.9;
 /// By what fraction the factor of `f` may change before the matrix is factorised anew.
 const STALE: f64 = 0.3;
+/// Iterations where the answer is to be as good as the numbers.
+const MOST_PRECISE_ITERATIONS: usize = 40;
+/// The last change, in units of a few resolutions, that is put up with where rounding ends the convergence.
+const ROUNDING: f64 = 1e5;
 /// For how many steps a Jacobian is kept.
 const OLDEST: usize = 50;
 
@@ -29,6 +33,9 @@ pub(in crate::integrate) struct Newton<T> {
     /// For how many steps the Jacobian has been used; nothing where there is none.
     age: Option<usize>,
     rate: f64,
+    most_iterations: usize,
+    /// The size of a change at which it does not matter that changes no longer become smaller.
+    stagnant: f64,
     guess: Vec<T>,
     derivative: Vec<T>,
     change: Vec<T>,
@@ -56,11 +63,18 @@ impl<T: Scalar> Newton<T> {
             factored: None,
             age: None,
             rate: 1.0,
+            most_iterations: MOST_ITERATIONS,
+            stagnant: 0.0,
             guess: vector(),
             derivative: vector(),
             change: vector(),
             counts: NewtonCounts::default(),
         }
+    }
+
+    /// The same for answers that are as good as the numbers: the norm has to allow a few of their resolutions.
+    pub(in crate::integrate) fn precise(dimension: usize) -> Self {
+        Self { most_iterations: MOST_PRECISE_ITERATIONS, stagnant: ROUNDING, ..Self::new(dimension) }
     }
 
     /// What solving took so far.
@@ -173,7 +187,7 @@ impl<T: Scalar> Newton<T> {
         let ratio = self.factored.map_or(1.0, |factored| (next.first / factored).to_f64());
         let scale = T::from_f64(2.0 / (1.0 + ratio));
         let mut before: Option<f64> = None;
-        for iteration in 0..MOST_ITERATIONS {
+        for iteration in 0..self.most_iterations {
             if iteration > 0 {
                 self.evaluate(field, t, x);
             }
@@ -191,7 +205,7 @@ impl<T: Scalar> Newton<T> {
             if let Some(before) = before {
                 let rate = size / before;
                 if rate > SLOWEST {
-                    return false;
+                    return size <= self.stagnant;
                 }
                 self.rate = rate.max(0.2 * self.rate);
             }

@@ -3,7 +3,7 @@ use crate::integrate::coefficients::{WeightedRow, combine};
 use crate::integrate::field::{Field, Parts};
 use crate::integrate::history::{BLOCK, History};
 use crate::integrate::method::{Method, Mode};
-use crate::integrate::solve::FixedPoint;
+use crate::integrate::solve::Iteration;
 use crate::integrate::status::Status;
 use crate::math::Scalar;
 use fearless_simd::Level;
@@ -22,7 +22,7 @@ pub(super) struct Correction<T> {
     error: Vec<T>,
     /// Whether the last step was made by a pair, which tells its error.
     has_error: bool,
-    fixed_point: FixedPoint<T>,
+    iteration: Iteration<T>,
 }
 
 /// The row that corrects, and how often.
@@ -65,7 +65,7 @@ impl<T: Scalar> Correction<T> {
             g: vector(if has_second { dimension } else { 0 }),
             error: vector(dimension),
             has_error: false,
-            fixed_point: FixedPoint::for_dimension(dimension, has_second),
+            iteration: Iteration::new(dimension, has_second),
         }
     }
 
@@ -161,7 +161,7 @@ impl<T: Scalar> Correction<T> {
         let second = if self.g.is_empty() { T::zero() } else { second };
         let next = Affine { known, first, second };
         let solved = match field.solve(t, next, x) {
-            Solved::NotOffered => self.fixed_point.solve(field, t, next, x),
+            Solved::NotOffered => self.iteration.solve(field, t, next, x),
             solved => solved,
         };
         if solved == Solved::Converged { Status::of_finite(x) } else { Status::NotSolved }

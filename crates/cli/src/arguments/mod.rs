@@ -1,6 +1,7 @@
 //! What can be asked on the command line.
 
 mod formula;
+mod ode;
 mod plan;
 mod robot;
 mod study;
@@ -10,6 +11,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(super) use formula::*;
+pub(super) use ode::*;
 pub(super) use plan::*;
 pub(super) use robot::*;
 pub(super) use study::*;
@@ -99,6 +101,20 @@ Examples:
   kinstep reproduce
   kinstep reproduce --out paper --json          the trajectories, a page of each, and reproduce.json")]
     Reproduce(ReproduceArguments),
+    /// Solve an initial value problem: varying steps and order, events, output times; or any row of the table in equal steps
+    #[command(after_help = "\
+Examples:
+  kinstep ode                                                the built-in problems and the families
+  kinstep ode kepler --rtol 1e-10 --at 1,2,3
+  kinstep ode van_der_pol --set problem.parameters.m=1000 --until 2000 --out solution
+  kinstep ode kepler --method la6-wang-guo --sigma 0.001
+  kinstep ode kepler --predictor ab4 --corrector am3 --json
+  kinstep ode mine.toml --family bdf --until 1e11
+
+Without a method it begins with the Adams family (orders 1 to 12) and changes to backward differentiation (bdf, orders 1 to 5) where 25 steps in a row
+are bounded by stability and not by their error, and back where the Jacobian says that Adams would do.
+A problem file has a table [problem] with equations, initial values and, if you like, events: docs/ode.md. A run that stops exits with 5.")]
+    Ode(OdeArguments),
     /// Study which order runs really show: of scenarios, of textbook problems, of your own row
     #[command(after_help = "\
 Examples:

@@ -8,6 +8,7 @@ mod axis;
 mod figure;
 mod formula;
 mod layout;
+mod ode;
 mod order;
 mod outline;
 mod pareto;
@@ -26,6 +27,7 @@ pub use formula::{
     boundary_figure, comparison, frequency_figure, locus_figure, portrait, radius_figure, region_figure,
     roots_figure,
 };
+pub use ode::ode_figures;
 pub use order::order_figure;
 pub use pareto::{FrontPoint, pareto_figure};
 pub use plan::{PlanFigures, plan_figures};
