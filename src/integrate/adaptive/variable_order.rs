@@ -12,6 +12,10 @@ use crate::integrate::field::{Field, Parts};
 use crate::integrate::solve::ErrorNorm;
 use crate::math::Scalar;
 
+/// What part of the tolerances a step may err by: errors of steps add up, and so what is asked for is about what the end has.
+const PER_STEP: f64 = 0.05;
+/// How many resolutions of the numbers a step may err by at least.
+const RESOLVED: f64 = 10.0;
 /// How much a step may grow at once.
 const GROWTH: f64 = 1.3;
 /// The same while orders rise after a start.
@@ -90,7 +94,7 @@ enum Failed {
 
 impl<T: Scalar> VariableOrder<T> {
     /// A stepper from the state `x0` at `t0` to the time `end`, with the tolerances `relative |x| + absolute`, one absolute tolerance
-    /// for all components or one for each.
+    /// for all components or one for each. Each step may err by a twentieth of them, in the root mean square over the components.
     ///
     /// # Errors
     /// An initial state of the wrong length or not finite, tolerances that are negative or not finite or nothing at all, an end at the
@@ -110,6 +114,7 @@ impl<T: Scalar> VariableOrder<T> {
             return Err(IntegrateError::TwoParts { id: family.id().to_owned() });
         }
         let mut norm = ErrorNorm::new(relative, absolute, dimension)?;
+        norm.tighten(PER_STEP, RESOLVED * T::RESOLUTION);
         norm.weigh_by(x0);
         if !(end - t0).is_finite() || end == t0 {
             return Err(IntegrateError::Range { start: format!("{t0:?}"), end: format!("{end:?}") });

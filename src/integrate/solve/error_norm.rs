@@ -35,6 +35,12 @@ impl ErrorNorm {
         Ok(Self { relative, absolute: absolute.to_vec(), weights: vec![0.0; dimension] })
     }
 
+    /// Allows a part of what was allowed, but for relative errors as small as `least`.
+    pub(in crate::integrate) fn tighten(&mut self, part: f64, least: f64) {
+        self.relative = if self.relative > 0.0 { (part * self.relative).max(least) } else { 0.0 };
+        self.absolute.iter_mut().for_each(|absolute| *absolute *= part);
+    }
+
     /// A norm that [allows](Self::allow) all components the same.
     pub(in crate::integrate) fn even(dimension: usize) -> Self {
         Self { relative: 0.0, absolute: vec![1.0], weights: vec![1.0; dimension] }

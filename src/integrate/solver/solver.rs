@@ -17,8 +17,8 @@ use crate::math::Scalar;
 /// | [`Solver::family`] | one of the two |
 /// | [`Solver::method`] | any row or pair of the table in equal steps |
 ///
-/// The error of each step is held below `rtol |x_i| + atol_i` in the root mean square over the components; that of the solution is
-/// mostly a few times as large, and more where the problem amplifies errors.
+/// The error of each step is held below a twentieth of `rtol |x_i| + atol_i` in the root mean square over the components, so that the
+/// error at the end is mostly about what is allowed; more where the problem amplifies errors.
 ///
 /// ```
 /// use kinstep::integrate::{Direction, Event, Ode, Solver};

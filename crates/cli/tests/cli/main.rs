@@ -10,6 +10,7 @@ mod lab;
 #[path = "../../../report/tests/report/markup.rs"]
 mod markup;
 mod noise;
+mod ode;
 mod order;
 mod page;
 mod plan;

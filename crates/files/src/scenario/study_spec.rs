@@ -25,6 +25,9 @@ pub struct ProblemSpec {
     /// What it is and where it is from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
+    /// Whether explicit formulas need far shorter steps for stability than for accuracy.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stiff: bool,
     /// Names with a value.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub parameters: BTreeMap<String, Real>,
