@@ -1,3 +1,4 @@
+#![allow(clippy::print_stdout)]
 //! Initial value problems: a stiff one that nobody called so, one with events, and one that is kept as a function of time.
 //!
 //! `cargo run --example solve_ode`

@@ -4,10 +4,11 @@ use super::convergence::{Convergence, Criteria, Mark};
 use super::ladder::{Ladder, Rung};
 use super::measure::Measure;
 use super::problem::Problem;
+use super::reference::started;
 use super::round_off::jitter;
 use super::samples::{Errors, Samples};
 use kinstep::formula::Formula;
-use kinstep::integrate::{IntegrateError, Multistep, Ode, Starter, Status};
+use kinstep::integrate::{IntegrateError, Ode, Starter, Status};
 use kinstep::planner::{ArmPlan, Plan, Planner};
 use nalgebra::Vector6;
 use std::fmt;
@@ -445,7 +446,7 @@ fn integrate(
     rung: Rung,
 ) -> Result<Samples, IntegrateError> {
     let mut field = Ode::new(problem.dimension, problem.derivative);
-    let mut stepper = Multistep::new(formula, starter, &field, 0.0, rung.sigma, &problem.initial())?;
+    let mut stepper = started(formula, starter, &field, rung.sigma, &problem.initial())?;
     let mut states = stepper.state().to_vec();
     for _ in 0..rung.steps {
         if stepper.step(&mut field) != Status::Running {

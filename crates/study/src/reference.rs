@@ -2,7 +2,9 @@
 
 use super::ladder::{Ladder, Rung};
 use kinstep::formula::Formula;
-use kinstep::integrate::{Elementary, Equations, Field, IntegrateError, Multistep, Scalar, Starter, Status};
+use kinstep::integrate::{
+    Elementary, Equations, Field, IntegrateError, Method, Multistep, Scalar, Starter, Status,
+};
 use kinstep::math::DoubleDouble;
 use num_traits::{One, Zero};
 
@@ -211,7 +213,7 @@ pub(super) fn trajectory<T: Elementary>(
 ) -> Result<Vec<T>, IntegrateError> {
     let mut field = equations.field::<T>();
     let sigma = T::from_extended(time(duration, 1, steps));
-    let mut stepper = Multistep::new(formula, starter, &field, T::zero(), sigma, &equations.initial::<T>())?;
+    let mut stepper = started(formula, starter, &field, sigma, &equations.initial())?;
     let mut states = stepper.state().to_vec();
     for _ in 0..steps {
         if stepper.step(&mut field) != Status::Running {
@@ -220,6 +222,20 @@ pub(super) fn trajectory<T: Elementary>(
         states.extend_from_slice(stepper.state());
     }
     Ok(states)
+}
+
+/// A stepper for a right-hand side of one part from t = 0. Of an implicit-explicit row only the explicit half has something to do.
+pub(super) fn started<T: Scalar>(
+    formula: &Formula,
+    starter: &Starter<T>,
+    field: &impl Field<T>,
+    sigma: T,
+    initial: &[T],
+) -> Result<Multistep<T>, IntegrateError> {
+    if formula.is_explicit() {
+        return Multistep::new(formula, starter, field, T::zero(), sigma, initial);
+    }
+    Multistep::of_method(Method::of(formula), starter, field, T::zero(), sigma, initial)
 }
 
 /// All times at which some rung has a sample, in order, with those rungs.

@@ -6,7 +6,7 @@ use super::measure::Measure;
 use super::order::{OrderReport, OrderStudy, Orders};
 use super::reference::Reference;
 use super::soundness;
-use kinstep::formula::{Duty, Formula, FormulaTable};
+use kinstep::formula::{Duty, Formula, FormulaTable, NotRunnable};
 use kinstep::integrate::{Elementary, Equations, IntegrateError, Starter};
 use kinstep::math::DoubleDouble;
 use kinstep::planner::Planner;
@@ -407,15 +407,21 @@ fn chosen_rows(
         let table =
             rows.table_for(&id).map_err(|e| if ids.is_empty() { e } else { refuse(e.kind, e.message) })?;
         let row = table.get(&id).map_err(|e| refuse(ErrorKind::Scenario, e.to_string()))?;
-        let runnable = if scenario.problem.is_some() || scenario.allow_unstable {
-            row.runnable()
-        } else {
-            row.runnable_with_feedback()
-        };
-        runnable.map_err(|e| refuse(ErrorKind::Formula, e.to_string()))?;
+        runs(row, scenario).map_err(|e| refuse(ErrorKind::Formula, e))?;
         chosen.push(row.clone());
     }
     Ok(chosen)
+}
+
+/// Says whether a row can run: on arms explicit ones with a feedback range, on a problem also those that are solved.
+fn runs(row: &Formula, scenario: &Scenario) -> Result<(), String> {
+    let is_problem = scenario.problem.is_some();
+    let runnable =
+        if is_problem || scenario.allow_unstable { row.runnable() } else { row.runnable_with_feedback() };
+    match runnable {
+        Err(NotRunnable::Implicit { .. }) if is_problem => Ok(()),
+        other => other.map_err(|e| e.to_string()),
+    }
 }
 
 /// Arms are run in doubles. Where these do not reach far enough to decide, the same row shows its order with more digits.

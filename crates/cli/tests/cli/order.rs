@@ -106,9 +106,10 @@ fn problems_come_by_name_and_from_files() {
     let error =
         kinstep(&["order", "problems/kepler.toml", "--formula", "nosuch", "--json"]).expect(2).error();
     assert!(error["message"].as_str().unwrap().starts_with("--formula nosuch: "), "{error}");
-    let error = kinstep(&["order", "problems/kepler.toml", "--formula", "bdf2", "--json"]).expect(4).error();
+    let error =
+        kinstep(&["order", "problems/kepler.toml", "--formula", "bad-bdf7", "--json"]).expect(4).error();
     assert!(
-        error["message"].as_str().unwrap().starts_with("--formula bdf2: ") && error["line"].is_null(),
+        error["message"].as_str().unwrap().starts_with("--formula bad-bdf7: ") && error["line"].is_null(),
         "{error}"
     );
 }

@@ -193,7 +193,6 @@ fn rows_that_may_not_run_and_gaps_that_do_not_divide_are_refused() {
         study.unwrap_err().to_string()
     };
     assert!(refused(&[], "bad-bdf7").contains("zero-stable"));
-    assert!(refused(&[], "am3").contains("implicit"), "{}", refused(&[], "am3"));
     assert!(refused(&[], "ab44").contains("ab4"));
     assert!(refused(&["study.sigmas=[0.7, 0.35]"], "ab4").contains("shortened last step"));
     assert!(refused(&["study.steps=[200, 100]"], "ab4").contains("coarsest gap first"));

@@ -23,7 +23,7 @@ enum Kind {
     WeaklyStable,
     /// Its refusal is its test.
     Unstable,
-    /// It does not run yet: its order is that of its defect.
+    /// It runs on equations, not on arms: its order is that of its defect too.
     Implicit,
 }
 
@@ -246,7 +246,7 @@ fn weakly_stable_rows_run_on_arms_without_feedback_and_are_refused_with_it() {
 }
 
 #[test]
-fn unstable_and_implicit_rows_are_refused_by_name_by_everything_that_runs() {
+fn unstable_and_implicit_rows_are_refused_by_name_by_arms() {
     for formula in rows(Kind::Unstable).into_iter().chain(rows(Kind::Implicit)) {
         let field = Led { gain: 1.0_f64 };
         let refused = Multistep::new(formula, &Starter::Rk8, &field, 0.0, 0.1, &[1.0]).unwrap_err();
