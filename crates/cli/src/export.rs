@@ -5,18 +5,18 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::arguments::{ExportArguments, ReadingArguments, TrajectoryRobot};
+use super::arguments::ExportArguments;
 use super::failure::{Exit, Failure};
 use super::folder::Folder;
 use super::formats::{self, Exports};
+use super::loaded::{Loaded, NamedRobot, Staged, load};
 use super::output::{Output, Show};
 use super::stopped::Stopped;
+use kinstep::robot::Chain;
 use kinstep::robot::names::printable;
-use kinstep::robot::{Chain, Robot, UrdfOptions};
 use kinstep::task::TaskKind;
-use kinstep_files::scenario::{RobotSource, ScenarioText, suggestion};
 use kinstep_files::trajectory::{
-    ArmTrajectory, KnownJoint, Machine, ReadOptions, Reading, Recording, Stage, StagedArm, Trajectory, units,
+    ArmTrajectory, KnownJoint, Machine, Recording, Stage, StagedArm, Trajectory, units,
 };
 use nalgebra::IsometryMatrix3;
 
@@ -42,8 +42,10 @@ pub(super) fn run(arguments: &ExportArguments, output: &mut Output) -> Result<Ex
     if let Some(stopped) = Stopped::check(&arguments.trajectory)? {
         output.aside(&printable(&stopped.sentence));
     }
-    let Loaded { mut trajectory, stage, mut notes, joints } =
-        load(&arguments.trajectory, &arguments.robot, None, &arguments.reading)?;
+    let robots = Robots::of(arguments)?;
+    let Loaded { mut trajectory, mut notes, joints } =
+        load(&arguments.trajectory, robots.joints(), &arguments.reading)?;
+    let stage = robots.staged(&trajectory)?;
     notes.extend(left_out(&trajectory, &stage));
     let warnings = units::questions(&trajectory, &joints);
     output.remarks(&notes, &warnings);
@@ -68,118 +70,67 @@ fn beside(path: &Path) -> PathBuf {
     parent.unwrap_or(Path::new(".")).to_owned()
 }
 
-/// A trajectory that was read.
-pub(super) struct Loaded {
-    pub(super) trajectory: Trajectory,
-    /// The robots that it is of, where they are known: those of the folder of results, or the one that the arguments name with the
-    /// ends of its arm.
-    pub(super) stage: Stage,
-    /// What was recognised and assumed.
-    pub(super) notes: Vec<String>,
-    /// The joints that may move in it; none where that is not known.
-    pub(super) joints: Vec<KnownJoint>,
+/// The robots that a trajectory is of, where they are known.
+enum Robots {
+    /// Those of a folder of results.
+    Own(Box<Staged>),
+    /// The one that the arguments name.
+    Named(Box<NamedRobot>),
+    Unknown,
 }
 
-/// Reads a trajectory, or the one in a folder of results.
-pub(super) fn load(
-    path: &Path,
-    robot: &TrajectoryRobot,
-    scenario: Option<&Path>,
-    reading: &ReadingArguments,
-) -> Result<Loaded, Failure> {
-    if path.is_dir() {
-        let read = formats::read(&path.join("trajectory.csv"), &ReadOptions::default())?;
-        let stage = stage_of(&path.join("scenario.toml"))?;
-        let joints = staged_joints(&stage);
-        return Ok(Loaded { trajectory: read.trajectory, stage, notes: read.notes, joints });
+impl Robots {
+    fn of(arguments: &ExportArguments) -> Result<Self, Failure> {
+        if arguments.trajectory.is_dir() {
+            let staged = Staged::read(&arguments.trajectory.join("scenario.toml"))?;
+            return Ok(Self::Own(Box::new(staged)));
+        }
+        let named = NamedRobot::of(&arguments.robot)?;
+        Ok(named.map_or(Self::Unknown, |named| Self::Named(Box::new(named))))
     }
-    let joints = known_joints(robot, scenario)?;
-    let options = reading.options(joints);
-    let Reading { trajectory, notes } = formats::read(path, &options)?;
-    if let Some(hint) = options.hint(&trajectory) {
-        return Err(Failure::new(Exit::Robot, hint).in_file(&path.display().to_string()));
-    }
-    let stage = staged(&trajectory, robot)?;
-    Ok(Loaded { trajectory, stage, notes, joints: options.joints })
-}
 
-fn stage_of(scenario: &Path) -> Result<Stage, Failure> {
-    let text = ScenarioText::read(scenario)?;
-    Ok(text.scenario()?.stage(text.folder()).map_err(|e| text.placed(e))?)
-}
-
-/// The joints of the robot that is named, or else of those of the scenario, those of the arms first and in their order.
-fn known_joints(robot: &TrajectoryRobot, scenario: Option<&Path>) -> Result<Vec<KnownJoint>, Failure> {
-    let Some(reference) = &robot.robot else {
-        return scenario.map_or_else(|| Ok(Vec::new()), |file| Ok(staged_joints(&stage_of(file)?)));
-    };
-    let read = self::robot(reference)?;
-    let mut joints = KnownJoint::of(&read);
-    if let (Some(base), Some(tip)) = (&robot.base, &robot.tip)
-        && let Ok(chain) = read.chain(base, tip)
-    {
-        chain_first(&mut joints, &chain);
-    }
-    Ok(joints)
-}
-
-fn staged_joints(stage: &Stage) -> Vec<KnownJoint> {
-    let mut joints: Vec<KnownJoint> = Vec::new();
-    for joint in stage.machines.iter().flat_map(|machine| KnownJoint::of(&machine.robot)) {
-        if joints.iter().all(|known| known.name != joint.name) {
-            joints.push(joint);
+    /// The joints that may move in it.
+    fn joints(&self) -> Vec<KnownJoint> {
+        match self {
+            Self::Own(staged) => staged.joints(),
+            Self::Named(named) => named.joints(),
+            Self::Unknown => Vec::new(),
         }
     }
-    stage.arms.iter().rev().for_each(|arm| chain_first(&mut joints, &arm.chain));
-    joints
+
+    /// Returns them on their stage; a named robot takes the ends of its arm to be on one.
+    fn staged(self, trajectory: &Trajectory) -> Result<Stage, Failure> {
+        match self {
+            Self::Own(staged) => Ok(staged.stage),
+            Self::Named(named) => match named.chain.clone() {
+                Some(chain) => lone_stage(trajectory, *named, chain),
+                None => Ok(Stage::default()),
+            },
+            Self::Unknown => Ok(Stage::default()),
+        }
+    }
 }
 
-/// Puts the joints of a chain first, in its order.
-fn chain_first(joints: &mut [KnownJoint], chain: &Chain) {
-    let place = |joint: &KnownJoint| {
-        chain.joints().iter().position(|own| own.name == joint.name).unwrap_or(usize::MAX)
-    };
-    joints.sort_by_key(place);
-}
-
-/// Returns the stage of a lone arm; without a robot there is none.
-fn staged(trajectory: &Trajectory, robot: &TrajectoryRobot) -> Result<Stage, Failure> {
-    let (Some(reference), Some(base), Some(tip)) = (&robot.robot, &robot.base, &robot.tip) else {
-        return Ok(Stage::default());
-    };
+/// Returns the stage of a lone arm.
+fn lone_stage(trajectory: &Trajectory, named: NamedRobot, chain: Chain) -> Result<Stage, Failure> {
     let [arm] = &trajectory.arms[..] else {
         let count = trajectory.arms.len();
         let message =
             format!("--robot is one robot, and {count} arms move here; give the folder of the results");
         return Err(Failure::usage(message));
     };
-    let source = RobotSource::find(reference, None)?;
-    let read = source.read(&UrdfOptions::default()).map_err(|e| source.refusal(&e))?;
-    let refuse = |message: String| Failure::new(Exit::Robot, message).in_file(reference);
-    let chain = read.chain(base, tip).map_err(|e| refuse(e.to_string()))?;
-    check_joints(arm, &chain, &read, reference)?;
+    named.check_chain(arm)?;
+    let (urdf, folder) = (named.urdf(), named.folder());
     let machine = Machine {
-        urdf: source.urdf(),
-        folder: source.folder(),
-        ..Machine::new(&arm.name, read, base, &IsometryMatrix3::identity())
+        urdf,
+        folder,
+        ..Machine::new(&arm.name, named.robot, chain.base(), &IsometryMatrix3::identity())
     };
-    let staged = StagedArm::new(&arm.name, (0, &machine.robot), chain, TaskKind::Pose)
-        .ok_or_else(|| refuse("the chain moves a joint that the robot does not have".to_owned()))?;
+    let staged = StagedArm::new(&arm.name, (0, &machine.robot), chain, TaskKind::Pose).ok_or_else(|| {
+        let message = "the chain moves a joint that the robot does not have";
+        Failure::new(Exit::Robot, message).in_file(&named.reference)
+    })?;
     Ok(Stage { machines: vec![machine], arms: vec![staged] })
-}
-
-/// Refuses a trajectory that moves joints that a robot does not have, or lacks one of a chain.
-fn check_joints(arm: &ArmTrajectory, chain: &Chain, robot: &Robot, reference: &str) -> Result<(), Failure> {
-    let movable = robot.joints().iter().filter(|joint| joint.kind.is_movable());
-    let known: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();
-    arm.joints.iter().try_for_each(|joint| check_joint(joint, &known, reference))?;
-    match chain.joints().iter().find(|joint| !arm.joints.contains(&joint.name)) {
-        Some(missing) => {
-            let message = format!("the trajectory does not have joint `{}` of the chain", missing.name);
-            Err(Failure::new(Exit::Robot, message).in_file(reference))
-        }
-        None => Ok(()),
-    }
 }
 
 /// What is said of the joints that move in a trajectory and are none of its arm's, such as those of a gripper.
@@ -195,22 +146,8 @@ fn left_out(trajectory: &Trajectory, stage: &Stage) -> Vec<String> {
     trajectory.arms.iter().filter_map(of_arm).collect()
 }
 
-/// Refuses a joint that is not among the known ones, with the nearest of them.
-pub(super) fn check_joint(joint: &str, known: &[&str], robot: &str) -> Result<(), Failure> {
-    if known.contains(&joint) {
-        return Ok(());
-    }
-    Err(unknown_joint(joint, known, &format!("{robot} that it could")).in_file(robot))
-}
-
-/// The refusal of a joint that is not among those that are known, with the nearest of them.
-pub(super) fn unknown_joint(joint: &str, known: &[&str], whose: &str) -> Failure {
-    let hint = suggestion(joint, known.iter().copied());
-    Failure::new(Exit::Robot, format!("the trajectory moves `{joint}`, which is no joint of {whose}; {hint}"))
-}
-
 /// Takes the joints of the chain of every arm, in its order.
-pub(super) fn in_order_of(trajectory: &mut Trajectory, stage: &Stage) {
+fn in_order_of(trajectory: &mut Trajectory, stage: &Stage) {
     for arm in &mut trajectory.arms {
         if let Some(staged) = stage.arm(&arm.name) {
             let order: Vec<&str> = staged.chain.joints().iter().map(|joint| joint.name.as_str()).collect();
@@ -219,10 +156,4 @@ pub(super) fn in_order_of(trajectory: &mut Trajectory, stage: &Stage) {
             }
         }
     }
-}
-
-/// Reads the robot that is named.
-pub(super) fn robot(reference: &str) -> Result<Robot, Failure> {
-    let source = RobotSource::find(reference, None)?;
-    Ok(source.read(&UrdfOptions::default()).map_err(|e| source.refusal(&e))?)
 }

@@ -10,11 +10,14 @@ use super::failure::{Exit, Failure};
 use kinstep::robot::names::shown;
 use kinstep_report::{WriteError, write_whole};
 
-/// A folder for results, and whether files in it may be replaced.
+/// A folder for results, and whether files in it may be replaced. One that was made for them and in which nothing was written is
+/// taken away again.
 pub(super) struct Folder {
     path: PathBuf,
     replace: bool,
     interrupted: Arc<AtomicBool>,
+    /// What was made, the innermost first.
+    made: Vec<PathBuf>,
 }
 
 impl Folder {
@@ -34,9 +37,10 @@ impl Folder {
             let message = format!("{}: this is a file; {option} names a folder", shown(path));
             return Err(Failure::new(Exit::File, message).in_file(&path.display().to_string()));
         }
+        let made = path.ancestors().take_while(|folder| !folder.exists()).map(Path::to_owned).collect();
+        let folder = Self { path: path.to_owned(), replace, interrupted: Arc::default(), made };
         std::fs::create_dir_all(path)
             .map_err(|source| failure(&WriteError::Io { path: path.to_owned(), source }))?;
-        let folder = Self { path: path.to_owned(), replace, interrupted: Arc::default() };
         match names.iter().map(|name| folder.path.join(name)).find(|file| file.symlink_metadata().is_ok()) {
             Some(file) if !replace => Err(failure(&WriteError::Exists(file))),
             _ => Ok(folder),
@@ -45,8 +49,9 @@ impl Folder {
 
     /// The same folder, where writing is given up once the flag is set.
     #[must_use]
-    pub(super) fn interruptible(self, interrupted: Arc<AtomicBool>) -> Self {
-        Self { interrupted, ..self }
+    pub(super) fn interruptible(mut self, interrupted: Arc<AtomicBool>) -> Self {
+        self.interrupted = interrupted;
+        self
     }
 
     /// Where it is.
@@ -63,6 +68,15 @@ impl Folder {
         let content =
             |out: &mut dyn Write| content(&mut Interruptible { out, interrupted: &self.interrupted });
         write_whole(&self.path.join(name), self.replace, content).map_err(|e| failure(&e))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        for made in &self.made {
+            // A folder that is not empty stays.
+            let _ = std::fs::remove_dir(made);
+        }
     }
 }
 

@@ -16,6 +16,7 @@ mod formula_plot;
 mod formula_schema;
 mod formula_search;
 mod ode;
+mod loaded;
 mod order;
 mod output;
 mod paint;

@@ -2,8 +2,8 @@
 //!
 //! Tables hold one trajectory for each arm, messages one for each machine, and other programs name theirs as they like.
 
-use super::export;
 use super::failure::{Exit, Failure};
+use super::loaded::unknown_joint;
 use kinstep::planner::Arm;
 use kinstep_files::scenario::suggestion;
 use kinstep_files::trajectory::ArmTrajectory;
@@ -109,13 +109,13 @@ fn check_takers(
     if let Some(other) = takers.iter().find(|other| machine(other) != machine(first)) {
         let (name, first, other) = (&one.name, first.name(), other.name());
         return Err(Failure::usage(format!(
-            "`{name}` may be arm `{first}` or arm `{other}`, which are two machines; call it by the name of one"
+            "`{name}` may be arm `{first}` or arm `{other}`, which are two machines; --arm NAME says which"
         )));
     }
     let known: Vec<&str> = takers.iter().flat_map(|arm| joints(arm)).collect();
     let follows = |joint: &String| followers.iter().any(|followers| followers.contains(joint));
     match one.joints.iter().find(|joint| !known.contains(&joint.as_str()) && !follows(joint)) {
-        Some(joint) => Err(export::unknown_joint(joint, &known, &of_scenario(takers))),
+        Some(joint) => Err(unknown_joint(joint, &known, &of_scenario(takers))),
         None => Ok(()),
     }
 }

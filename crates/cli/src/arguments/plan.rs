@@ -191,6 +191,10 @@ pub(crate) struct ReadingArguments {
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     pub(crate) prefix: Option<String>,
 
+    /// What the arm is called, where only one moves: the arm of a scenario that it is, or the name that is written
+    #[arg(long, value_name = "NAME")]
+    pub(crate) arm: Option<String>,
+
     /// The unit of the times: s, ms, us or ns; seconds, unless they are dates that can not be
     #[arg(long, value_name = "UNIT")]
     pub(crate) time_unit: Option<TimeUnit>,
@@ -205,6 +209,19 @@ pub(crate) struct ReadingArguments {
 }
 
 impl ReadingArguments {
+    /// The first of them that is given.
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        let given = [
+            ("--map", !self.map.is_empty()),
+            ("--prefix", self.prefix.is_some()),
+            ("--arm", self.arm.is_some()),
+            ("--time-unit", self.time_unit.is_some()),
+            ("--degrees", self.degrees),
+            ("--unwrap", self.unwrap),
+        ];
+        given.into_iter().find_map(|(option, is_given)| is_given.then_some(option))
+    }
+
     /// What they say, of a file in which these joints may move.
     pub(crate) fn options(&self, joints: Vec<KnownJoint>) -> ReadOptions {
         ReadOptions {

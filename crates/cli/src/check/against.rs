@@ -1,11 +1,10 @@
 //! What a trajectory is held against: the robots that move, their limits, and the paths that they should follow.
 
 use std::borrow::Cow;
-use std::path::Path;
 
 use super::super::arguments::CheckArguments;
-use super::super::export::{self, Loaded};
 use super::super::failure::Failure;
+use super::super::loaded::{Loaded, NamedRobot, Staged, load};
 use super::super::output::Output;
 use super::super::robot::limited_by;
 use super::super::share_out::{Shares, Taker, share_out};
@@ -13,7 +12,7 @@ use super::sentences;
 use super::verdict::{ArmChecked, Checked, Clock, PathChecked};
 use kinstep::planner::Arm;
 use kinstep::robot::{Joint, Limits, Robot};
-use kinstep_files::scenario::{RelationSpec, ScenarioText};
+use kinstep_files::scenario::RelationSpec;
 use kinstep_files::trajectory::{
     ArmTrajectory, Course, Interpolation, JointFigures, Met, Stage, Straying, TimeFigures, Trajectory, units,
 };
@@ -58,10 +57,7 @@ impl Asked {
         Self { takers: Vec::new(), stage: Stage::default(), duration: None, tasks: Vec::new() }
     }
 
-    fn of(file: &Path) -> Result<Self, Failure> {
-        let text = ScenarioText::read(file)?;
-        let scenario = text.scenario()?;
-        let stage = scenario.stage(text.folder()).map_err(|e| text.placed(e))?;
+    fn of(Staged { text, scenario, stage }: Staged) -> Result<Self, Failure> {
         let taker = |arm: Arm| {
             let followers =
                 robot_of(&stage, arm.name()).map_or_else(Vec::new, |robot| followers(&arm, robot));
@@ -76,12 +72,15 @@ impl Asked {
 }
 
 /// The robot that is named, with the limits of the file that is named over its own.
-fn robot_of_file(name: &str, arguments: &CheckArguments, output: &Output) -> Result<Robot, Failure> {
-    let robot = export::robot(name)?;
-    match &arguments.limits {
-        Some(file) => limited_by(&robot, file, output),
-        None => Ok(robot),
+fn limited(
+    mut named: NamedRobot,
+    arguments: &CheckArguments,
+    output: &Output,
+) -> Result<NamedRobot, Failure> {
+    if let Some(file) = &arguments.limits {
+        named.robot = limited_by(&named.robot, file, output)?;
     }
+    Ok(named)
 }
 
 /// The robot that an arm is part of.
@@ -104,27 +103,25 @@ impl Against {
         let own = arguments.trajectory.join("scenario.toml");
         let folder = arguments.trajectory.is_dir().then_some(own.as_path());
         let scenario = arguments.scenario.as_deref().or(folder);
-        let Loaded { mut trajectory, notes, joints, .. } = export::load(
-            &arguments.trajectory,
-            &arguments.robot,
-            arguments.scenario.as_deref(),
-            &arguments.reading,
-        )?;
+        let staged = scenario.map(Staged::read).transpose()?;
+        let named = NamedRobot::of(&arguments.robot)?;
+        let of_scenario = || staged.as_ref().map_or_else(Vec::new, Staged::joints);
+        let joints = named.as_ref().map_or_else(of_scenario, NamedRobot::joints);
+        let Loaded { mut trajectory, notes, joints } =
+            load(&arguments.trajectory, joints, &arguments.reading)?;
         let warnings = units::questions(&trajectory, &joints);
         let Asked { takers, stage, duration, tasks } =
-            scenario.map_or_else(|| Ok(Asked::nothing()), Asked::of)?;
-        let robot = arguments.robot.robot.as_deref();
-        let robot = robot
-            .map(|name| Ok::<_, Failure>((name, robot_of_file(name, arguments, output)?)))
-            .transpose()?;
+            staged.map_or_else(|| Ok(Asked::nothing()), Asked::of)?;
+        let robot = named.map(|named| limited(named, arguments, output)).transpose()?;
         let Shares { moved, absent } = share_out(&trajectory.arms, takers, robot.is_some())?;
         let (mut arms, mut all) = (Vec::new(), Vec::new());
         for (arm, path) in moved {
             let own = path.as_ref().and_then(|path| robot_of(&stage, path.name()));
             let robot = match (&robot, own) {
-                (Some((name, robot)), _) => {
-                    check_joints(&arm, robot, name)?;
-                    robot
+                (Some(named), _) => {
+                    named.check_chain(&arm)?;
+                    named.check_joints(&arm)?;
+                    &named.robot
                 }
                 (None, Some(robot)) => robot,
                 (None, None) => {
@@ -216,13 +213,6 @@ impl Moved {
 fn own_joints<'a>(arm: &'a ArmTrajectory, path: &Arm) -> Cow<'a, ArmTrajectory> {
     let joints: Vec<&str> = path.chain().joints().iter().map(|joint| joint.name.as_str()).collect();
     arm.with_joints(&joints)
-}
-
-/// Refuses joints that a robot does not have.
-fn check_joints(arm: &ArmTrajectory, robot: &Robot, name: &str) -> Result<(), Failure> {
-    let movable = robot.joints().iter().filter(|joint| joint.kind.is_movable());
-    let known: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();
-    arm.joints.iter().try_for_each(|joint| export::check_joint(joint, &known, name))
 }
 
 /// The interpolation that is asked for, or that the samples imply.

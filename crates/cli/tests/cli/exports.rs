@@ -77,10 +77,12 @@ fn files_are_decided_before_anything_is_computed() {
 #[test]
 fn an_end_in_motion_is_refused_for_controllers_unless_a_stop_is_added() {
     let desk = Desk::new(&[("s.toml", &hasty())]);
-    let run = desk.run(&["plan", "s.toml", "--out", "o", "--format", "ros2"]).expect(2);
+    let run = desk.run(&["plan", "s.toml", "--out", "n/o", "--format", "ros2"]).expect(2);
     assert!(run.err.contains("--append-stop"), "{}", run.err);
-    assert_eq!(desk.names("o"), Vec::<String>::new());
+    assert_eq!(desk.names("."), ["s.toml"]);
     desk.run(&["plan", "s.toml", "--out", "o", "--format", "ros2", "--append-stop"]).expect(0);
+    desk.run(&["export", "o", "--format", "ros2", "--out", "other/deeper"]).expect(2);
+    assert_eq!(desk.names("."), ["o", "s.toml"]);
     let table = Trajectory::read(desk.path("o/trajectory.csv")).unwrap();
     let command = Trajectory::read(desk.path("o/trajectory.left.yaml")).unwrap();
     assert_eq!(command.samples(), table.samples() + 1);
@@ -106,6 +108,13 @@ fn a_lone_table_gets_a_robot_and_its_joints_are_known() {
     assert!(run.expect(0).err.contains("left out, because no joint of the arm: `j4`"));
     let short = Trajectory::read(desk.path("short/trajectory.csv")).unwrap();
     assert_eq!(short.arms[0].joints, ["j1", "j2", "j3"]);
+    // A gripper that the robot's file is without is left out for the arm's sake; a check says nothing of what it does not know.
+    std::fs::write(desk.path("fingers.csv"), "t,j1,j2,j3,j4,finger\n0,0,0,0,0,1\n1,0,0,0,0,0\n").unwrap();
+    let named = ["--out", "fingers", "--arm", "left"];
+    let run = desk.run(&[&["export", "fingers.csv", "--format", "moveit"], &robot[..], &named].concat());
+    assert!(run.expect(0).err.contains("no joint of the arm: `finger`"));
+    assert_eq!(desk.names("fingers"), ["trajectory.left.moveit.yaml"]);
+    desk.run(&[&["check", "fingers.csv"], &robot[..]].concat()).expect(3);
     let error = desk.run(&["check", "b.csv", "--robot", "planar4"]).expect(3);
     assert!(error.err.contains("did you mean"), "{}", error.err);
     desk.run(&["check", "a.csv"]).expect(2);
@@ -267,8 +276,17 @@ fn two_machines_are_told_apart_in_messages() {
     // Of no name there is no telling which of the two it is, unless the scenario has one only.
     let text = std::fs::read_to_string(desk.path("o/trajectory.left.yaml")).unwrap();
     std::fs::write(desk.path("theirs.yaml"), text.replace("# machine: left\n", "")).unwrap();
-    let refused = desk.run(&["check", "theirs.yaml", "--scenario", "s.toml"]).expect(2).err;
+    let of_pair = ["check", "theirs.yaml", "--scenario", "s.toml", "--json"];
+    let refused = desk.run(&of_pair).expect(2).error().to_string();
     assert!(refused.contains("`arm` may be arm `left` or arm `right`"), "{refused}");
+    assert!(refused.contains("--arm NAME says which"), "{refused}");
+    let said = desk.run(&[&of_pair[..], &["--arm", "left"]].concat()).expect(0).json();
+    assert_eq!(checked_arms(&said), [vec!["left"], vec!["right"]]);
+    let refused =
+        desk.run(&["check", "o/trajectory.mcap", "--scenario", "s.toml", "--arm", "left"]).expect(2);
+    assert!(refused.err.contains("a lone arm, and here move left, right"), "{}", refused.err);
+    let refused = desk.run(&["check", "o", "--arm", "left"]).expect(2);
+    assert!(refused.err.contains("--arm: this is about files of others"), "{}", refused.err);
     std::fs::write(desk.path("one.toml"), SMALL).unwrap();
     let one = desk.run(&["check", "theirs.yaml", "--scenario", "one.toml", "--json"]).expect(0).json();
     assert_eq!(checked_arms(&one), [vec!["left"], Vec::new()]);

@@ -31,10 +31,16 @@ pub(super) fn check_messages(recording: Recording<'_>) -> Result<(), Refusal> {
 pub(super) fn check_command(recording: Recording<'_>) -> Result<(), Refusal> {
     check_messages(recording)?;
     match fastest_end(recording.trajectory) {
-        Some((name, velocity)) if velocity.abs() > REST => Err(Refusal(format!(
-            "joint `{name}` ends with a velocity of {velocity:.3e}, and controllers refuse an end that is not at rest (above \
-             {REST:e}); --append-stop adds a deceleration, or choose a time law that ends at rest"
-        ))),
+        Some((name, velocity)) if velocity.abs() > REST => {
+            let remedy = match recording.trajectory.samples() {
+                1 => "there is no second sample, and so no motion that could be brought to rest",
+                _ => "--append-stop adds a deceleration, or choose a time law that ends at rest",
+            };
+            Err(Refusal(format!(
+                "joint `{name}` ends with a velocity of {velocity:.3e}, and controllers refuse an end that is not at rest (above \
+                 {REST:e}); {remedy}"
+            )))
+        }
         _ => Ok(()),
     }
 }

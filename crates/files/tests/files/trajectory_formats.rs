@@ -168,6 +168,7 @@ fn what_controllers_refuse_is_refused() {
     for format in [&yaml as &dyn TrajectoryFormat, &moveit] {
         written(format, &even);
         assert!(refused(format, &moving(&[0.0, 0.1])).contains("--append-stop"));
+        assert!(refused(format, &moving(&[1.0])).contains("there is no second sample"));
     }
     written(&Mcap, &moving(&[0.0, 0.1]));
     for format in [&yaml as &dyn TrajectoryFormat, &moveit, &Mcap] {
