@@ -480,3 +480,28 @@ fn two_arms_carry_one_object_to_a_billionth() {
     let text = kinstep(&["plan", "examples/carry.toml"]).expect(0).out;
     assert!(text.contains("carry of left and right: max error"), "{text}");
 }
+
+#[test]
+fn they_do_so_to_a_ten_millionth_while_a_velocity_limit_is_active() {
+    let scenario = std::fs::read_to_string(format!("{REPOSITORY}/examples/carry.toml")).unwrap();
+    let limited =
+        scenario.replacen("base = \"panda_link0\"", "base = \"panda_link0\"\nlimits = \"limits.yaml\"", 1);
+    let limit = 0.0488;
+    let limits =
+        format!("joint_limits:\n  panda_joint1:\n    has_velocity_limits: true\n    max_velocity: {limit}\n");
+    let desk = Desk::new(&[("carry.toml", &limited), ("limits.yaml", &limits)]);
+    let law = ["--set", "law.kind=qp", "--set", "law.h=0.2", "--out", "plan", "--json"];
+    let plan = desk.run(&[&["plan", "carry.toml"], &law[..]].concat()).expect(0).json();
+    let told = &plan["relations"][0];
+    assert!(
+        number(&told["max_position_error"]) < 1e-7 && number(&told["max_orientation_error"]) < 1e-7,
+        "{told}"
+    );
+    assert_eq!(plan["arms"][0]["limits"]["violations"], serde_json::json!([]));
+    let table = std::fs::read_to_string(desk.path("plan/trajectory.csv")).unwrap();
+    let place =
+        table.lines().next().unwrap().split(',').position(|name| name == "left.panda_joint1.velocity");
+    let velocity = |line: &str| line.split(',').nth(place.unwrap()).unwrap().parse::<f64>().unwrap();
+    let active = table.lines().skip(1).filter(|line| velocity(line).abs() > 0.995 * limit).count();
+    assert!(active > 60, "{active} samples of {}", table.lines().count());
+}
